@@ -1,0 +1,72 @@
+"""ffsr-plan: collision-free motions of free-flying space robots, base reaction included.
+
+    import ffsr_plan as fp
+
+    problem = fp.load_scenario("fig2a")
+    plan = fp.plan(problem, seed=0)
+    assert plan.verify().ok
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ffsr_plan import momentum
+from ffsr_plan.axes import Axis, Lattice
+from ffsr_plan.collision import clearance
+from ffsr_plan.colony import AntSystem
+from ffsr_plan.errors import (
+    FfsrPlanError,
+    GoalInCollision,
+    InvalidInput,
+    NoPath,
+    PlanningError,
+    StartInCollision,
+)
+from ffsr_plan.lattice import LayeredLattice
+from ffsr_plan.planner import plan
+from ffsr_plan.problem import Problem
+from ffsr_plan.result import Plan
+from ffsr_plan.roadmap import Roadmap
+from ffsr_plan.robot import SpaceRobot, load_robot, robot_names
+from ffsr_plan.scene import Scene
+
+if TYPE_CHECKING:
+    from ffsr_plan.scenario import Scenario, load_scenario, read_scenario
+
+__version__ = "0.1.0"
+__all__ = [
+    "AntSystem",
+    "Axis",
+    "FfsrPlanError",
+    "GoalInCollision",
+    "InvalidInput",
+    "Lattice",
+    "LayeredLattice",
+    "NoPath",
+    "Plan",
+    "PlanningError",
+    "Problem",
+    "Roadmap",
+    "Scenario",
+    "Scene",
+    "SpaceRobot",
+    "StartInCollision",
+    "clearance",
+    "load_robot",
+    "load_scenario",
+    "momentum",
+    "plan",
+    "read_scenario",
+    "robot_names",
+]
+
+_LAZY = ("Scenario", "load_scenario", "read_scenario")  # these need pydantic
+
+
+def __getattr__(name: str) -> object:
+    if name in _LAZY:
+        from ffsr_plan import scenario
+
+        return getattr(scenario, name)
+    raise AttributeError(f"module 'ffsr_plan' has no attribute '{name}'")

@@ -1,0 +1,69 @@
+"""What a colony reports: each cycle as it goes, and the whole search at its end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from ffsr_plan.inputs import Array, IntArray
+
+
+class Cycle(NamedTuple):
+    """The state of the colony after one cycle, for callbacks."""
+
+    number: int
+    """Cycles done, from 1."""
+    cycles: int
+    """Cycles allowed."""
+    best: float
+    """Least F so far."""
+    iteration_best: float
+    mean: float
+    distinct: int
+    """Different paths among the ants; 1 is stagnation."""
+    path: IntArray
+    """(m + 1,) nodes of the best path so far."""
+    counts: IntArray
+    """(m + 1, n) ants on each node in this cycle (b_j of Eq. 10)."""
+    pheromone: Array
+    """(m, n, n) tau of each edge; a view that the colony goes on changing."""
+
+
+OnCycle = Callable[[Cycle], object]
+
+
+class History(NamedTuple):
+    """One entry a cycle, arrays of shape (cycles,)."""
+
+    best: Array
+    """Least F so far."""
+    iteration_best: Array
+    """Least F among the ants of the cycle."""
+    mean: Array
+    """Mean F of the ants of the cycle."""
+    distinct: IntArray
+    """Different paths among the ants of the cycle."""
+
+
+class Trails(NamedTuple):
+    """The edges that ants walked, arrays of shape (edges,)."""
+
+    layer: IntArray
+    """Layer that the edge leaves."""
+    tail: IntArray
+    """Node left, 0 .. n-1 (a row of `LayeredLattice.indices`)."""
+    head: IntArray
+    """Node reached on the next layer."""
+    ants: IntArray
+    """How many ants walked it, all cycles together (Eq. 10 summed over time)."""
+    pheromone: Array
+    """tau at the end."""
+
+
+class Search(NamedTuple):
+    """The outcome of a planner."""
+
+    path: IntArray
+    """(m + 1,) nodes of the best path."""
+    history: History
+    trails: Trails

@@ -1,0 +1,67 @@
+"""`Motion`: the continuous whole-body motion through a sequence of corners.
+
+Between corners the base origin and the joints move linearly; the attitude follows the mode: it
+reacts to the arms (free-flying) or turns steadily from start to goal (attitude-held).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from ffsr_plan import attitude
+from ffsr_plan.inputs import Array, IntArray, frozen
+from ffsr_plan.problem import Problem
+from ffsr_plan.reaction import Reaction
+
+
+class Motion:
+    """Configurations along edges 0 .. m-1, each run from time 0 to 1.
+
+    Attributes:
+        positions: (m + 1, 3) base origin at the corners, world [m].
+        joint_values: (m + 1, nd) at the corners [rad or m].
+        attitudes: (m + 1, 4) base attitude at the corners (xyzw), reaction included.
+    """
+
+    def __init__(self, problem: Problem, positions: Array) -> None:
+        """The motion of `problem` through base positions (m + 1, 3) of one's choice."""
+        self.problem = problem
+        divisions = problem.lattice.divisions
+        progress = np.arange(divisions + 1) / divisions
+        begin = problem.robot.joint_values(problem.start)
+        self.positions = frozen(np.array(positions, dtype=np.float64))
+        self.joint_values = frozen(begin + progress[:, None] * problem.joint_travel)
+        if self._reacts:
+            self.attitudes = frozen(self.reaction.attitudes(problem.start[3:7]))
+        else:
+            self.attitudes = frozen(self._held(progress))
+
+    @property
+    def _reacts(self) -> bool:
+        return self.problem.mode == "free-flying"
+
+    @cached_property
+    def reaction(self) -> Reaction:
+        """The base rotation that the joint path brings about."""
+        return Reaction(self.problem.robot, self.joint_values)
+
+    def configurations(self) -> Array:
+        """(m + 1, nq) configurations at the corners."""
+        return self.problem.robot.assemble(self.positions, self.attitudes, self.joint_values)
+
+    def at(self, edge: IntArray, time: Array) -> Array:
+        """(N, nq) configurations on `edge` (N,) at `time` (N,) in [0, 1]."""
+        t = time[:, None]
+        position = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
+        joints = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
+        if self._reacts:
+            turned = self.reaction.rotation(edge, time)
+            quat = attitude.multiply(self.attitudes[edge], turned)
+        else:
+            quat = self._held((edge + time) / self.problem.lattice.divisions)
+        return self.problem.robot.assemble(position, quat, joints)
+
+    def _held(self, progress: Array) -> Array:
+        return attitude.slerp(self.problem.start[3:7], self.problem.goal[3:7], progress)

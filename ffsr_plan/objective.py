@@ -1,0 +1,44 @@
+"""Length L and objective F of a path (Eqs. 6 and 8)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.inputs import Array
+from ffsr_plan.problem import Problem
+
+
+def path_length(problem: Problem, offsets: Array) -> float:
+    """L of Eq. 6 [m]: sum of sqrt(delta_d^2 + |offset change|^2) over the edges.
+
+    Args:
+        problem: gives delta_d and the weight of a metre.
+        offsets: (m + 1, 3) displacement from the nominal base position on each layer [m].
+    """
+    across = np.linalg.norm(np.diff(offsets, axis=0), axis=1) * problem.position_weight
+    return float(np.sum(np.sqrt(problem.delta_d**2 + across**2)))
+
+
+def nearness(problem: Problem, clearances: Array) -> Array:
+    """delta / d_imin of Eq. 8 for clearances [m] of any shape, in units of length.
+
+    d counts in `length_unit`s and at most up to `clearance_cap`. Infinite where d <= 0.
+    """
+    d = np.asarray(clearances, dtype=np.float64)
+    if problem.clearance_cap is not None:
+        d = np.minimum(d, problem.clearance_cap)
+    if problem.delta == 0.0:
+        return np.where(d > 0.0, 0.0, np.inf)
+    with np.errstate(divide="ignore"):
+        return np.where(d > 0.0, problem.delta * problem.length_unit / d, np.inf)
+
+
+def objective(problem: Problem, length: float, clearances: Array) -> float:
+    """F of Eq. 8 in units of length: L + delta sum over layers 1 .. m-1 of 1 / d_imin.
+
+    Args:
+        problem: gives delta, the length unit and the cap.
+        length: L [m].
+        clearances: (m + 1,) clearances at the nodes [m].
+    """
+    return length / problem.length_unit + float(np.sum(nearness(problem, clearances[1:-1])))

@@ -1,0 +1,161 @@
+"""Plans as JSON files: self-contained, bit for bit, and with a digest that shows any change."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ffsr_plan.axes import Axis, Lattice
+from ffsr_plan.colony import History, Trails
+from ffsr_plan.errors import FfsrPlanError, InvalidInput
+from ffsr_plan.inputs import frozen
+from ffsr_plan.planner import PLANNERS
+from ffsr_plan.problem import Problem
+from ffsr_plan.result import Plan
+from ffsr_plan.roadmap import Certificate
+from ffsr_plan.robot import robot_from_urdf
+from ffsr_plan.scene import Scene
+
+FORMAT = "ffsr-plan/1"
+_PLAIN = (
+    "mode", "delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight",
+    "tolerance",
+)  # fmt: skip
+
+
+def to_dict(plan: Plan) -> dict[str, Any]:
+    """The plan in plain Python values. Infinite clearances (an empty scene) become None."""
+    problem = plan.problem
+    return {
+        "format": FORMAT,
+        "problem": {
+            "robot": {
+                "name": problem.robot.name,
+                "urdf": problem.robot.urdf,
+                "package_dirs": list(problem.robot.package_dirs),
+            },
+            "scene": {
+                "centers": problem.scene.centers.tolist(),
+                "radii": problem.scene.radii.tolist(),
+            },
+            "start": problem.start.tolist(),
+            "goal": problem.goal.tolist(),
+            "lattice": dataclasses.asdict(problem.lattice),
+            **{name: getattr(problem, name) for name in _PLAIN},
+        },
+        "planner": {"name": plan.planner.name, **dataclasses.asdict(plan.planner)},
+        "seed": plan.seed,
+        "nodes": plan.nodes.tolist(),
+        "configurations": plan.configurations.tolist(),
+        "length": plan.length,
+        "objective": plan.objective,
+        "lattice_objective": plan.lattice_objective,
+        "clearances": _without_infinity(plan.clearances),
+        "history": {k: v.tolist() for k, v in plan.history._asdict().items()},
+        "trails": {k: v.tolist() for k, v in plan.trails._asdict().items()},
+        "certificate": {
+            **plan.certificate._asdict(),
+            "least_clearance": _without_infinity(np.array([plan.certificate.least_clearance]))[0],
+        },
+        "seconds": plan.seconds,
+    }
+
+
+def from_dict(data: dict[str, Any]) -> Plan:
+    """The inverse of `to_dict`."""
+    given = data["problem"]
+    settings = dict(data["planner"])
+    lattice = given["lattice"]
+    axes = {k: Axis(**lattice[k]) for k in ("lateral", "normal") if lattice[k] is not None}
+    robot = given["robot"]
+    problem = Problem(
+        robot_from_urdf(robot["urdf"], robot["name"], robot["package_dirs"]),
+        Scene(given["scene"]["centers"], given["scene"]["radii"]),
+        start=given["start"],
+        goal=given["goal"],
+        lattice=Lattice(divisions=lattice["divisions"], **axes),
+        **{name: given[name] for name in _PLAIN},
+    )
+    certificate = dict(data["certificate"])
+    certificate["least_clearance"] = float(_with_infinity([certificate["least_clearance"]])[0])
+    return Plan(
+        problem=problem,
+        planner=PLANNERS[settings.pop("name")](**settings),
+        seed=data["seed"],
+        nodes=_whole(data["nodes"]),
+        configurations=frozen(np.array(data["configurations"], dtype=np.float64)),
+        length=data["length"],
+        objective=data["objective"],
+        lattice_objective=data["lattice_objective"],
+        clearances=_with_infinity(data["clearances"]),
+        history=History(**{k: _numbers(v) for k, v in data["history"].items()}),
+        trails=Trails(**{k: _numbers(v) for k, v in data["trails"].items()}),
+        certificate=Certificate(**certificate),
+        seconds=data["seconds"],
+    )
+
+
+def write(plan: Plan, path: Path) -> None:
+    """Write `path`; an unfinished file never takes its place."""
+    data = to_dict(plan)
+    partial = path.with_name(path.name + ".part")
+    partial.write_text(json.dumps({"sha256": _digest(data), **data}, allow_nan=False, indent=1))
+    partial.replace(path)
+
+
+def read(path: Path) -> Plan:
+    """Read and check `path`; see `Plan.load`."""
+    what = f"plan file '{path}'"
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidInput(what, type(error).__name__, "a readable plan file") from None
+    try:
+        data = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise InvalidInput(
+            what, f"broken JSON at line {error.lineno}", "a whole plan file; this one is cut short"
+        ) from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        found = data.get("format") if isinstance(data, dict) else type(data).__name__
+        raise InvalidInput(what, found, f"format '{FORMAT}'")
+    digest = data.pop("sha256", None)
+    if digest != _digest(data):
+        raise InvalidInput(what, "contents that do not match their digest", "an unchanged plan file")
+    try:
+        return from_dict(data)
+    except (KeyError, TypeError, ValueError) as error:
+        if isinstance(error, FfsrPlanError):
+            raise
+        raise InvalidInput(what, repr(error), "every field of a plan file") from None
+
+
+def _digest(data: dict[str, Any]) -> str:
+    canonical = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def _numbers(values: list[float]) -> NDArray[Any]:
+    array = np.array(values) if values else np.zeros(0)
+    array.setflags(write=False)
+    return array
+
+
+def _whole(values: list[int]) -> NDArray[np.int64]:
+    array = np.array(values, dtype=np.int64)
+    array.setflags(write=False)
+    return array
+
+
+def _without_infinity(values: NDArray[np.float64]) -> list[float | None]:
+    return [float(v) if np.isfinite(v) else None for v in values]
+
+
+def _with_infinity(values: list[float | None]) -> NDArray[np.float64]:
+    return frozen(np.array([np.inf if v is None else v for v in values], dtype=np.float64))

@@ -1,0 +1,147 @@
+"""`Problem`: everything that defines what is to be planned, checked once, immutable after."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ffsr_plan.attitude import angle_between
+from ffsr_plan.axes import Lattice
+from ffsr_plan.errors import InvalidInput
+from ffsr_plan.inputs import Array, frozen, number, one_of
+from ffsr_plan.robot import SpaceRobot
+from ffsr_plan.scene import Scene
+
+MODES = ("free-flying", "attitude-held")
+_SAME = 1e-12  # below this, two places or joint values count as one
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A planning problem.
+
+    Attributes:
+        robot: the robot.
+        scene: the obstacles.
+        start: (nq,) start configuration.
+        goal: (nq,) goal configuration. In the mode `free-flying` its attitude is not demanded: the
+            attitude follows from the arms' motion.
+        mode: `free-flying` (thrusters translate the base along the lattice, acting through the
+            centre of mass; the attitude reacts to the arms) or `attitude-held` (wheels hold the
+            attitude interpolated from start to goal).
+        lattice: layers and offsets.
+        delta: weight of nearness to obstacles in Eq. 8, in units of length squared, >= 0.
+        length_unit: metres per unit of length in F. The paper gives no unit, and F is not
+            scale-free: it decides what delta weighs.
+        clearance_cap: clearance [m] beyond which more distance counts no further, or None.
+        position_weight: metres of length per metre of translation (Eq. 4).
+        rotation_weight: metres of length per radian of joint or held-base rotation (Eq. 4).
+        tolerance: clearance [m] below which an edge may count as blocked.
+    """
+
+    robot: SpaceRobot
+    scene: Scene
+    start: Array
+    goal: Array
+    mode: str = "free-flying"
+    lattice: Lattice = field(default_factory=Lattice)
+    delta: float = 0.0
+    length_unit: float = 1.0
+    clearance_cap: float | None = None
+    position_weight: float = 1.0
+    rotation_weight: float = 1.0
+    tolerance: float = 1e-4
+
+    def __init__(  # the annotations differ from the fields': anything array-like may come in
+        self,
+        robot: SpaceRobot,
+        scene: Scene,
+        start: ArrayLike,
+        goal: ArrayLike,
+        mode: str = "free-flying",
+        lattice: Lattice | None = None,
+        delta: float = 0.0,
+        length_unit: float = 1.0,
+        clearance_cap: float | None = None,
+        position_weight: float = 1.0,
+        rotation_weight: float = 1.0,
+        tolerance: float = 1e-4,
+    ) -> None:
+        """Check and freeze the problem.
+
+        Raises:
+            InvalidInput: naming the field, its value and what is allowed.
+        """
+        for name, value, kind in (
+            ("robot", robot, SpaceRobot),
+            ("scene", scene, Scene),
+            ("lattice", lattice or Lattice(), Lattice),
+        ):
+            if not isinstance(value, kind):
+                raise InvalidInput(name, value, f"a {kind.__name__}")
+        values = {
+            "robot": robot,
+            "scene": scene,
+            "start": robot.check_configuration("start", start),
+            "goal": robot.check_configuration("goal", goal),
+            "mode": one_of("mode", mode, MODES),
+            "lattice": lattice or Lattice(),
+            "delta": number("delta", delta, at_least=0.0),
+            "length_unit": number("length_unit", length_unit, above=0.0),
+            "clearance_cap": None
+            if clearance_cap is None
+            else number("clearance_cap", clearance_cap, above=0.0),
+            "position_weight": number("position_weight", position_weight, above=0.0),
+            "rotation_weight": number("rotation_weight", rotation_weight, at_least=0.0),
+            "tolerance": number("tolerance", tolerance, at_least=1e-7),
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        self._check_that_something_is_to_be_done()
+
+    @property
+    def travel(self) -> Array:
+        """(3,) from the base's start to its goal, world axes [m]."""
+        return frozen(self.goal[:3] - self.start[:3])
+
+    @property
+    def joint_travel(self) -> Array:
+        """(nd,) change of the joint values [rad or m], continuous joints the shorter way round."""
+        robot = self.robot
+        change = robot.joint_values(self.goal) - robot.joint_values(self.start)
+        endless = np.isinf(robot.upper)
+        wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
+        return frozen(np.where(endless, wrapped, change))
+
+    @property
+    def turn(self) -> float:
+        """Angle from the start's to the goal's attitude [rad], where the mode prescribes both."""
+        if self.mode == "free-flying":
+            return 0.0
+        return float(angle_between(self.start[3:7], self.goal[3:7]))
+
+    @property
+    def delta_d(self) -> float:
+        """Length of one layer's nominal step, Eq. 4 [m]: weighted norm of what is prescribed."""
+        slide = self.robot.prismatic
+        joints = self.joint_travel
+        metres = np.concatenate([self.travel, joints[slide]]) * self.position_weight
+        radians = np.append(joints[~slide], self.turn) * self.rotation_weight
+        total = float(np.sqrt(np.sum(metres**2) + np.sum(radians**2)))
+        return total / self.lattice.divisions
+
+    def _check_that_something_is_to_be_done(self) -> None:
+        moves = float(np.linalg.norm(self.travel)) > _SAME
+        turns = float(np.max(np.abs(self.joint_travel), initial=0.0)) > _SAME or self.turn > _SAME
+        if not (moves or turns):
+            raise InvalidInput(
+                "goal", self.goal.tolist(), "a configuration that differs from the start"
+            )
+        if not moves and self.lattice.axes:
+            raise InvalidInput(
+                "lattice",
+                f"{' and '.join(self.lattice.axes)} axis, start and goal at one position",
+                "no lateral or normal axis where there is no direction of travel",
+            )

@@ -1,0 +1,132 @@
+"""`Plan`: what a planner returns. The path, its figures of merit, how it was found, what was proven."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ffsr_plan.attitude import to_angles
+from ffsr_plan.colony import AntSystem, History, Trails
+from ffsr_plan.errors import InvalidInput
+from ffsr_plan.inputs import Array, IntArray, finite_array
+from ffsr_plan.motion import Motion
+from ffsr_plan.problem import Problem
+from ffsr_plan.roadmap import Certificate
+
+if TYPE_CHECKING:  # these import this module; a plan calls them when asked to
+    from ffsr_plan.verify import Report
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A certified whole-body motion. Two plans are equal if all but the computing time is.
+
+    Attributes:
+        problem: what was planned.
+        planner: the planner's settings.
+        seed: the seed, or None if a generator was handed over.
+        nodes: offset indices along the path, 0 = no offset: (m + 1,), or (m + 1, axes) where the
+            lattice has several axes.
+        configurations: (m + 1, nq) base pose in the world [m, quaternion xyzw] and joints [rad, m].
+        length: L of Eq. 6 [m].
+        objective: F of Eq. 8 [length units].
+        lattice_objective: F of the path on the lattice.
+        clearances: (m + 1,) least link-to-sphere distance at each node [m].
+        history: per cycle, best F, best and mean F of the cycle, number of different paths.
+        trails: the edges that ants walked, with ants and pheromone.
+        certificate: edges proven, Coal queries spent, proven clearance along the whole motion.
+        seconds: computing time.
+    """
+
+    problem: Problem
+    planner: AntSystem
+    seed: int | None
+    nodes: IntArray
+    configurations: Array
+    length: float
+    objective: float
+    lattice_objective: float
+    clearances: Array
+    history: History
+    trails: Trails
+    certificate: Certificate
+    seconds: float
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The continuous motion through `configurations`."""
+        return Motion(self.problem, self.configurations[:, :3])
+
+    @property
+    def arrival_attitude(self) -> Array:
+        """(3,) ZYX angles alpha, beta, gamma [rad] of the base at the end of the motion."""
+        return to_angles(self.configurations[-1, 3:7])
+
+    def at(self, s: ArrayLike) -> Array:
+        """Configuration at path parameter `s` in [0, 1], the reaction of the base included.
+
+        Args:
+            s: a number, or an array (N,); node i is at i / m.
+
+        Returns:
+            (nq,) or (N, nq).
+
+        Raises:
+            InvalidInput: s outside [0, 1] or not finite.
+        """
+        parameter = finite_array("s", s, np.shape(s))
+        if np.any((parameter < 0.0) | (parameter > 1.0)):
+            raise InvalidInput("s", s, "path parameters from 0 to 1")
+        divisions = self.problem.lattice.divisions
+        scaled = np.atleast_1d(parameter).ravel() * divisions
+        edge = np.minimum(scaled.astype(np.int64), divisions - 1)
+        q = self.motion.at(edge, scaled - edge)
+        return q.reshape(*parameter.shape, self.problem.robot.model.nq)
+
+    def verify(self, samples: int = 2000) -> Report:
+        """Check the plan again, densely and by other code than the planner's; see `verify`.
+
+        Args:
+            samples: distance checks per edge.
+        """
+        from ffsr_plan.verify import verify
+
+        return verify(self, samples)
+
+    def save(self, path: str | Path) -> None:
+        """Write everything to a JSON file; `Plan.load` gives the same plan back, bit for bit."""
+        from ffsr_plan.plan_file import write
+
+        write(self, Path(path))
+
+    @staticmethod
+    def load(path: str | Path) -> Plan:
+        """Read a plan that `save` wrote. The file holds the robot's URDF too.
+
+        Raises:
+            InvalidInput: no such file, cut short, or changed since it was written.
+        """
+        from ffsr_plan.plan_file import read
+
+        return read(Path(path))
+
+    def write_html(self, path: str | Path) -> None:
+        """Write one self-contained page that shows the motion; it needs no network."""
+        from ffsr_plan.viewer import page
+
+        Path(path).write_text(page(self), encoding="utf-8")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Plan):
+            return NotImplemented
+        from ffsr_plan.plan_file import to_dict
+
+        first: dict[str, Any] = to_dict(self) | {"seconds": 0.0}
+        return first == to_dict(other) | {"seconds": 0.0}
+
+    __hash__ = None  # type: ignore[assignment]  # equality is by content

@@ -1,0 +1,256 @@
+"""`SpaceRobot`: a URDF as a Pinocchio model on a free-flyer joint, with its collision geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike, NDArray
+
+from ffsr_plan import bundled
+from ffsr_plan.attitude import IDENTITY, from_angles, to_angles
+from ffsr_plan.errors import InvalidInput, unknown_name
+from ffsr_plan.inputs import Array, finite_array, frozen, number, unit_quaternion
+from ffsr_plan.urdf_check import Counts, check_urdf
+
+
+class Components(NamedTuple):
+    """A configuration taken apart."""
+
+    position: Array
+    """(3,) [m], base origin in the world."""
+    attitude: Array
+    """(3,) [rad], ZYX angles alpha, beta, gamma of Eq. 2."""
+    joints: dict[str, float]
+    """Joint values by name [rad, or m where prismatic]."""
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceRobot:
+    """A free-flying robot. Made by `load_robot`; treat everything in it as read-only.
+
+    A configuration `q` is Pinocchio's vector (nq,): base position (3) [m] and quaternion
+    (x, y, z, w) of the base in the world, then the joints. `joint values` (nd,) are plain numbers,
+    one a joint in Pinocchio's order [rad or m], for continuous joints as well, which Pinocchio
+    keeps as cosine and sine.
+    """
+
+    name: str
+    urdf: str
+    """The URDF text that the robot was made from."""
+    model: pin.Model
+    collision_model: pin.GeometryModel
+    """Collision shapes, with the self-collision pairs: all but those of adjacent links."""
+    visual_model: pin.GeometryModel
+    package_dirs: tuple[str, ...] = ()
+    joint_names: tuple[str, ...] = field(init=False)
+    lower: Array = field(init=False)
+    """(nd,) lower joint limits, -inf for continuous joints."""
+    upper: Array = field(init=False)
+    prismatic: NDArray[np.bool_] = field(init=False)
+    """(nd,) booleans: which joint values are metres."""
+    _slots: tuple[tuple[int, int], ...] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        joints = [self.model.joints[j] for j in range(2, self.model.njoints)]
+        slots = tuple((j.idx_q, j.nq) for j in joints)
+        bounded = [nq == 1 for _, nq in slots]
+        lower = [
+            self.model.lowerPositionLimit[i] if b else -np.inf
+            for (i, _), b in zip(slots, bounded, strict=True)
+        ]
+        upper = [
+            self.model.upperPositionLimit[i] if b else np.inf
+            for (i, _), b in zip(slots, bounded, strict=True)
+        ]
+        fill = object.__setattr__
+        fill(self, "joint_names", tuple(self.model.names[j] for j in range(2, self.model.njoints)))
+        fill(self, "lower", frozen(np.array(lower, dtype=np.float64)))
+        fill(self, "upper", frozen(np.array(upper, dtype=np.float64)))
+        sliding = np.array([j.shortname().startswith("JointModelP") for j in joints], dtype=bool)
+        sliding.setflags(write=False)
+        fill(self, "prismatic", sliding)
+        fill(self, "_slots", slots)
+
+    @property
+    def nd(self) -> int:
+        """Number of joints of the arms, nv - 6."""
+        return len(self.joint_names)
+
+    def neutral(self) -> Array:
+        """(nq,) base at the world's origin, joint values zero."""
+        return self.assemble(np.zeros(3), IDENTITY, np.zeros(self.nd))
+
+    def configuration(
+        self,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        attitude: ArrayLike = (0.0, 0.0, 0.0),
+        joints: Mapping[str, float] | None = None,
+    ) -> Array:
+        """(nq,) configuration from the paper's coordinates.
+
+        Args:
+            position: (3,) base origin in the world [m].
+            attitude: (3,) ZYX angles alpha, beta, gamma [rad] of Eq. 2.
+            joints: values by joint name [rad or m]; the others are at zero.
+
+        Raises:
+            InvalidInput: unknown joint, not finite, wrong shape, or outside the joint's limits.
+        """
+        values = np.zeros(self.nd)
+        for name, value in (joints or {}).items():
+            if name not in self.joint_names:
+                raise unknown_name("joints", name, self.joint_names)
+            values[self.joint_names.index(name)] = number(f"joints.{name}", value)
+        self.check_limits("joints", values)
+        quat = from_angles(finite_array("attitude", attitude, (3,)))
+        return self.assemble(finite_array("position", position, (3,)), quat, values)
+
+    def components(self, q: ArrayLike) -> Components:
+        """The inverse of `configuration`: position, ZYX angles and joint values by name."""
+        q = self.check_configuration("q", q)
+        values = self.joint_values(q)
+        named = {name: float(v) for name, v in zip(self.joint_names, values, strict=True)}
+        return Components(q[:3], frozen(to_angles(q[3:7])), named)
+
+    def paper_vector(self, q: ArrayLike) -> Array:
+        """(nd + 6,) the paper's q: x, y, z, alpha, beta, gamma, theta_1 .. theta_nd."""
+        parts = self.components(q)
+        return np.concatenate([parts.position, parts.attitude, list(parts.joints.values())])
+
+    def from_paper_vector(self, vector: ArrayLike) -> Array:
+        """(nq,) configuration of the paper's (nd + 6,) vector."""
+        v = finite_array("vector", vector, (self.nd + 6,))
+        return self.configuration(
+            v[:3], v[3:6], dict(zip(self.joint_names, v[6:].tolist(), strict=True))
+        )
+
+    def assemble(self, position: Array, quat_xyzw: Array, joint_values: Array) -> Array:
+        """Configurations (..., nq) from arrays (..., 3), (..., 4) and (..., nd); unchecked."""
+        lead = np.broadcast_shapes(
+            position.shape[:-1], quat_xyzw.shape[:-1], joint_values.shape[:-1]
+        )
+        q = np.empty((*lead, self.model.nq))
+        q[..., :3] = position
+        q[..., 3:7] = quat_xyzw
+        for k, (i, nq) in enumerate(self._slots):
+            if nq == 1:
+                q[..., i] = joint_values[..., k]
+            else:
+                q[..., i] = np.cos(joint_values[..., k])
+                q[..., i + 1] = np.sin(joint_values[..., k])
+        return q
+
+    def joint_values(self, q: Array) -> Array:
+        """Joint values (..., nd) of configurations (..., nq); continuous joints in (-pi, pi]."""
+        values = np.empty((*q.shape[:-1], self.nd))
+        for k, (i, nq) in enumerate(self._slots):
+            values[..., k] = q[..., i] if nq == 1 else np.arctan2(q[..., i + 1], q[..., i])
+        return values
+
+    def check_configuration(self, what: str, q: ArrayLike) -> Array:
+        """A clean, read-only copy of `q` (nq,).
+
+        Raises:
+            InvalidInput: wrong length, not finite, quaternion (or a continuous joint's cosine and
+                sine) not of norm one, joint outside its limits.
+        """
+        checked = np.array(finite_array(what, q, (self.model.nq,)))
+        checked[3:7] = unit_quaternion(f"{what} (base quaternion)", checked[3:7])
+        for name, (i, nq) in zip(self.joint_names, self._slots, strict=True):
+            if nq == 2 and abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
+                raise InvalidInput(
+                    f"{what} (joint {name})", checked[i : i + 2].tolist(), "cosine and sine"
+                )
+        values = self.joint_values(checked)
+        self.check_limits(what, values)
+        return frozen(checked)
+
+    def check_limits(self, what: str, joint_values: Array) -> None:
+        """Raise `InvalidInput` for the first joint value outside its limits."""
+        for k, name in enumerate(self.joint_names):
+            if not self.lower[k] <= joint_values[k] <= self.upper[k]:
+                raise InvalidInput(
+                    f"{what} (joint {name})",
+                    float(joint_values[k]),
+                    f"{self.lower[k]:g} to {self.upper[k]:g}",
+                )
+
+    def link_of(self, geometry: pin.GeometryObject) -> str:
+        """Name of the URDF link that a collision or visual shape belongs to."""
+        return str(self.model.frames[geometry.parentFrame].name)
+
+
+def robot_names() -> list[str]:
+    """Names of the bundled robots."""
+    return bundled.names("urdf", ".urdf")
+
+
+def load_robot(source: str | Path, package_dirs: Sequence[str | Path] = ()) -> SpaceRobot:
+    """Load a robot whose root link floats freely.
+
+    Args:
+        source: name of a bundled robot (see `robot_names`), or path to a `.urdf` file.
+        package_dirs: folders in which `package://` mesh addresses are looked up.
+
+    Raises:
+        InvalidInput: no such robot or file, or a URDF that cannot be used, with the link or joint.
+    """
+    path = bundled.find("urdf", str(source), ".urdf")
+    if path is None:
+        path = Path(source)
+        if path.suffix != ".urdf":
+            raise unknown_name("robot", str(source), [*robot_names(), "or a path to a .urdf file"])
+        if not path.is_file():
+            raise InvalidInput("robot", str(source), "a bundled robot or an existing .urdf file")
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidInput("robot", str(source), f"a readable UTF-8 file ({error})") from None
+    folders = [str(Path(p)) for p in package_dirs] or [str(path.parent)]
+    return robot_from_urdf(text, path.stem, folders)
+
+
+def robot_from_urdf(text: str, name: str, package_dirs: Sequence[str] = ()) -> SpaceRobot:
+    """Make a robot from URDF text; see `load_robot`."""
+    counts = check_urdf(text, name)
+    folders = list(package_dirs)
+    try:
+        model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
+        collision = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION, package_dirs=folders)
+        visual = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.VISUAL, package_dirs=folders)
+    except ValueError as error:
+        reason = str(error).strip().splitlines()[-1]
+        raise InvalidInput(name, reason, "a URDF that Pinocchio can load") from None
+    _check_loaded(name, model, collision, counts)
+    for a, first in enumerate(collision.geometryObjects):
+        for b in range(a):
+            if not _adjacent(model, first.parentJoint, collision.geometryObjects[b].parentJoint):
+                collision.addCollisionPair(pin.CollisionPair(b, a))
+    return SpaceRobot(name, text, model, collision, visual, tuple(folders))
+
+
+def _adjacent(model: pin.Model, i: int, j: int) -> bool:
+    return bool(i == j or model.parents[i] == j or model.parents[j] == i)
+
+
+def _check_loaded(
+    name: str, model: pin.Model, collision: pin.GeometryModel, counts: Counts
+) -> None:
+    """Pinocchio drops some links and shapes without an error; count what arrived."""
+    links = sum(frame.type == pin.FrameType.BODY for frame in model.frames)
+    if (links, collision.ngeoms) != counts:
+        raise InvalidInput(
+            name,
+            f"{links} links and {collision.ngeoms} collision shapes after loading",
+            f"all {counts.links} links and {counts.collisions} shapes of the file, in one tree",
+        )
+    base = model.inertias[1]
+    if base.mass <= 0.0 or np.linalg.eigvalsh(base.inertia)[0] <= 0.0:
+        raise InvalidInput(
+            f"{name}, root link", f"mass {base.mass:g} kg", "a mass and a full inertia"
+        )
