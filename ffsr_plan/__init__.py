@@ -1,10 +1,10 @@
 """ffsr-plan: collision-free motions of free-flying space robots, base reaction included.
 
-    import ffsr_plan as fp
+import ffsr_plan as fp
 
-    problem = fp.load_scenario("fig2a")
-    plan = fp.plan(problem, seed=0)
-    assert plan.verify().ok
+problem = fp.load_scenario("fig2a")
+plan = fp.plan(problem, seed=0)
+assert plan.verify().ok
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ def multiply(p: Array, q: Array) -> Array:
 
 def inverse(q: Array) -> Array:
     """The opposite rotation."""
-    return q * np.array([-1.0, -1.0, -1.0, 1.0])
+    return np.concatenate([-q[..., :3], q[..., 3:]], axis=-1)
 
 
 def exp(phi: Array) -> Array:

@@ -8,6 +8,7 @@ the middle, and both halves are looked at again.
 
 from __future__ import annotations
 
+import heapq
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -20,13 +21,16 @@ class Verdict(NamedTuple):
 
     free: bool
     least_clearance: float
-    """If free, a lower bound on the clearance along the edge; else the least one met [m]."""
+    """The least clearance met [m]; what lies between was only shown to be greater than zero."""
     time: float
     """Where on the edge that was, in [0, 1]."""
 
 
 def certify(
-    clearance_at: Callable[[float], float], ends: tuple[float, float], speed: float, tolerance: float
+    clearance_at: Callable[[float], float],
+    ends: tuple[float, float],
+    speed: float,
+    tolerance: float,
 ) -> Verdict:
     """Prove that an edge keeps clear, or find where it does not.
 
@@ -39,25 +43,56 @@ def certify(
         speed: bound on the distance that any point travels over the edge [m].
         tolerance: clearance [m] below which an edge may be refused.
     """
-    least, least_time = min((ends[0], 0.0), (ends[1], 1.0))
-    if least <= 0.0:
-        return Verdict(False, least, least_time)
-    proven, proven_time = float("inf"), 0.0
+    least = min((ends[0], 0.0), (ends[1], 1.0))
+    if least[0] <= 0.0:
+        return Verdict(False, *least)
     stack = [(0.0, 1.0, ends[0], ends[1])]
     while stack:
         begin, end, first, last = stack.pop()
-        spare = first + last - (end - begin) * speed - ROUNDING
-        middle = 0.5 * (begin + end)
-        if spare > 0.0:
-            if 0.5 * spare < proven:
-                proven, proven_time = 0.5 * spare, middle
+        travel = (end - begin) * speed + ROUNDING
+        if first + last > travel:
             continue
         # here min(first, last) <= travel / 2: at or below the tolerance once the interval is short
-        if (end - begin) * speed + ROUNDING <= 2.0 * tolerance:
+        if travel <= 2.0 * tolerance:
             return Verdict(False, *min((first, begin), (last, end)))
+        middle = 0.5 * (begin + end)
         clearance = clearance_at(middle)
+        least = min(least, (clearance, middle))
         if clearance <= 0.0:
-            return Verdict(False, clearance, middle)
+            return Verdict(False, *least)
         stack.append((middle, end, clearance, last))
         stack.append((begin, middle, first, clearance))
-    return Verdict(True, min(proven, least), proven_time)
+    return Verdict(True, *least)
+
+
+def clearance_bound(
+    clearance_at: Callable[[float], float], ends: tuple[float, float], speed: float, gap: float
+) -> float:
+    """A proven lower bound on the clearance along an edge, within `gap` of the least clearance.
+
+    The interval whose bound is lowest is halved until that bound is close to a clearance that was
+    really met.
+
+    Args:
+        clearance_at: clearance [m] at a time in (0, 1).
+        ends: clearances at times 0 and 1.
+        speed: bound on the distance that any point travels over the edge [m].
+        gap: [m], greater than zero.
+    """
+
+    def interval(
+        begin: float, end: float, first: float, last: float
+    ) -> tuple[float, float, float, float, float]:
+        bound = 0.5 * (first + last - (end - begin) * speed - ROUNDING)
+        return (bound, begin, end, first, last)
+
+    met = min(ends)
+    heap = [interval(0.0, 1.0, *ends)]
+    while met - heap[0][0] > gap:
+        _, begin, end, first, last = heapq.heappop(heap)
+        middle = 0.5 * (begin + end)
+        clearance = clearance_at(middle)
+        met = min(met, clearance)
+        heapq.heappush(heap, interval(begin, middle, first, clearance))
+        heapq.heappush(heap, interval(middle, end, clearance, last))
+    return heap[0][0]

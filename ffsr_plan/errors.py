@@ -33,7 +33,7 @@ class PlanningError(FfsrPlanError):
     """The input is well formed, but no plan exists or none was found."""
 
 
-class _InCollision(PlanningError):
+class _InCollision(PlanningError):  # noqa: N818 - so are the names of its kinds
     """A prescribed configuration touches something.
 
     Attributes:
@@ -49,7 +49,9 @@ class _InCollision(PlanningError):
         self.obstacle = obstacle
         self.depth = depth
         other = f"obstacle {obstacle}" if isinstance(obstacle, int) else f"link '{obstacle}'"
-        super().__init__(f"{self.where} in collision: link '{link}' is {depth:.4g} m inside {other}")
+        super().__init__(
+            f"{self.where} in collision: link '{link}' is {depth:.4g} m inside {other}"
+        )
 
     def __reduce__(self) -> tuple[type, tuple[str, int | str, float]]:
         return type(self), (self.link, self.obstacle, self.depth)
@@ -81,7 +83,10 @@ class NoPath(PlanningError):  # noqa: N818 - the name is part of the public cont
         self.divisions = divisions
         spheres = ", ".join(str(o) for o in obstacles if isinstance(o, int))
         links = ", ".join(f"'{o}'" for o in obstacles if isinstance(o, str))
-        blame = [f"obstacles {spheres}" if spheres else "", f"self-collision of {links}" if links else ""]
+        blame = [
+            f"obstacles {spheres}" if spheres else "",
+            f"self-collision of {links}" if links else "",
+        ]
         super().__init__(
             f"no path on this lattice: layer {layer} of {divisions} cannot be passed "
             f"(closed by {' and '.join(filter(None, blame)) or 'the limits of the lattice'}); "

@@ -41,9 +41,9 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
             axes.annotate(str(k), center, ha="center", va="center", color="white", zorder=3)
     segments, strength = _trails(plan, view)
     if len(segments):
-        trails = LineCollection(segments, array=strength, cmap="BuPu", zorder=1)
+        trails = LineCollection(list(segments), array=strength, cmap="BuPu", zorder=1)
         trails.set_clim(-0.4, 1.0)
-        trails.set_linewidth(0.5 + 1.5 * strength)
+        trails.set_linewidth((0.5 + 1.5 * strength).tolist())
         axes.add_collection(trails)
     for s in np.linspace(0.0, 1.0, silhouettes):
         colour = _START if s == 0.0 else _GOAL if s == 1.0 else "#3b4252"
@@ -176,8 +176,6 @@ def _hull(points: Array) -> Array:
 
 
 def _trails(plan: Plan, view: Array) -> tuple[Array, Array]:
-    """Segments (k, 2, 2) of the ants' trails, faint first, and their strength in [0, 1]."""
-    from ffsr_plan.viewer_trails import trail_segments
-
-    segments, strength = trail_segments(plan)
+    """Segments (k, 2, 2) of the ants' trails in the plane of view, faint first, and strengths."""
+    segments, strength = plan.trail_segments()
     return segments @ view.T, strength

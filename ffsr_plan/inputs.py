@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numbers
 from collections.abc import Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +15,10 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-def frozen(array: Array) -> Array:
+AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
+
+
+def frozen(array: AnyArray) -> AnyArray:
     """The same array, read-only from here on."""
     array.setflags(write=False)
     return array

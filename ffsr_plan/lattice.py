@@ -47,8 +47,10 @@ class LayeredLattice:
         axes = [getattr(lattice, name) for name in lattice.axes]
         counts = [np.arange(-a.half_count, a.half_count + 1) for a in axes]
         grids = np.meshgrid(*counts, indexing="ij")
-        self.indices: IntArray = np.stack([g.ravel() for g in grids], axis=1) if axes else (
-            np.zeros((1, 0), dtype=np.int64)
+        self.indices: IntArray = (
+            np.stack([g.ravel() for g in grids], axis=1)
+            if axes
+            else (np.zeros((1, 0), dtype=np.int64))
         )
         self.indices.setflags(write=False)
         self.origin = len(self.indices) // 2

@@ -53,7 +53,8 @@ def attitude_rate_map(robot: SpaceRobot, q: ArrayLike) -> Array:
         InvalidInput: beta = +-90 degrees, where the ZYX angles are singular.
     """
     q = robot.check_configuration("q", q)
-    return np.linalg.solve(angle_rate_matrix(to_angles(q[3:7])), connection(robot, q))
+    rates = np.linalg.solve(angle_rate_matrix(to_angles(q[3:7])), connection(robot, q))
+    return np.asarray(rates, dtype=np.float64)
 
 
 def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:

@@ -20,7 +20,7 @@ def path_length(problem: Problem, offsets: Array) -> float:
 
 
 def nearness(problem: Problem, clearances: Array) -> Array:
-    """delta / d_imin of Eq. 8 for clearances [m] of any shape, in units of length.
+    """Delta / d_imin of Eq. 8 for clearances [m] of any shape, in units of length.
 
     d counts in `length_unit`s and at most up to `clearance_cap`. Infinite where d <= 0.
     """

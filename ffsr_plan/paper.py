@@ -160,7 +160,9 @@ def _link(name: str, body: Body, width: float, tip: bool) -> yourdfpy.Link:
         inertial=_inertial(body, body.length / 2, body.mass * width**2 / 6),
         visuals=[
             _visual(housing, 0.0, 0.0, _SILVER, "silver"),
-            _visual(bar, body.length / 2, 0.0, *((_ORANGE, "orange") if tip else (_WHITE, "white"))),
+            _visual(
+                bar, body.length / 2, 0.0, *((_ORANGE, "orange") if tip else (_WHITE, "white"))
+            ),
         ],
         collisions=[Collision(name=name, origin=_placement(middle, 0.0), geometry=shape)],
     )

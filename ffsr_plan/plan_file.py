@@ -127,7 +127,9 @@ def read(path: Path) -> Plan:
         raise InvalidInput(what, found, f"format '{FORMAT}'")
     digest = data.pop("sha256", None)
     if digest != _digest(data):
-        raise InvalidInput(what, "contents that do not match their digest", "an unchanged plan file")
+        raise InvalidInput(
+            what, "contents that do not match their digest", "an unchanged plan file"
+        )
     try:
         return from_dict(data)
     except (KeyError, TypeError, ValueError) as error:
@@ -142,15 +144,11 @@ def _digest(data: dict[str, Any]) -> str:
 
 
 def _numbers(values: list[float]) -> NDArray[Any]:
-    array = np.array(values) if values else np.zeros(0)
-    array.setflags(write=False)
-    return array
+    return frozen(np.array(values) if values else np.zeros(0))
 
 
 def _whole(values: list[int]) -> NDArray[np.int64]:
-    array = np.array(values, dtype=np.int64)
-    array.setflags(write=False)
-    return array
+    return frozen(np.array(values, dtype=np.int64))
 
 
 def _without_infinity(values: NDArray[np.float64]) -> list[float | None]:

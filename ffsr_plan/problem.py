@@ -74,13 +74,14 @@ class Problem:
         Raises:
             InvalidInput: naming the field, its value and what is allowed.
         """
-        for name, value, kind in (
-            ("robot", robot, SpaceRobot),
-            ("scene", scene, Scene),
-            ("lattice", lattice or Lattice(), Lattice),
-        ):
-            if not isinstance(value, kind):
-                raise InvalidInput(name, value, f"a {kind.__name__}")
+        kinds: dict[str, tuple[object, type]] = {
+            "robot": (robot, SpaceRobot),
+            "scene": (scene, Scene),
+            "lattice": (lattice or Lattice(), Lattice),
+        }
+        for name, (given, kind) in kinds.items():
+            if not isinstance(given, kind):
+                raise InvalidInput(name, given, f"a {kind.__name__}")
         values = {
             "robot": robot,
             "scene": scene,

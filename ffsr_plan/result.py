@@ -1,4 +1,4 @@
-"""`Plan`: what a planner returns. The path, its figures of merit, how it was found, what was proven."""
+"""`Plan`: what a planner returns: path, figures of merit, how it was found, what was proven."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ffsr_plan.attitude import to_angles
 from ffsr_plan.colony import AntSystem, History, Trails
 from ffsr_plan.errors import InvalidInput
 from ffsr_plan.inputs import Array, IntArray, finite_array
+from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.motion import Motion
 from ffsr_plan.problem import Problem
 from ffsr_plan.roadmap import Certificate
@@ -88,6 +89,24 @@ class Plan:
         q = self.motion.at(edge, scaled - edge)
         return q.reshape(*parameter.shape, self.problem.robot.model.nq)
 
+    def trail_segments(self) -> tuple[Array, Array]:
+        """Where the ants walked, faint trails first.
+
+        Returns:
+            Ends (k, 2, 3) of the edges, base origin in the world [m], and strengths (k,) in [0, 1]:
+            the logarithm of all pheromone ever laid on the edge, so that early trails show too.
+        """
+        lattice, trails = LayeredLattice(self.problem), self.trails
+        if not len(trails.layer):
+            return np.zeros((0, 2, 3)), np.zeros(0)
+        along, across = lattice.nominal.positions, lattice.offsets
+        begin = along[trails.layer] + across[trails.tail]
+        end = along[trails.layer + 1] + across[trails.head]
+        laid = np.log(trails.laid)
+        strength = (laid - laid.min()) / max(float(np.ptp(laid)), 1e-12)
+        order = np.argsort(strength, kind="stable")
+        return np.stack([begin, end], axis=1)[order], strength[order]
+
     def verify(self, samples: int = 2000) -> Report:
         """Check the plan again, densely and by other code than the planner's; see `verify`.
 
@@ -115,11 +134,11 @@ class Plan:
 
         return read(Path(path))
 
-    def write_html(self, path: str | Path) -> None:
+    def write_html(self, path: str | Path, title: str = "") -> None:
         """Write one self-contained page that shows the motion; it needs no network."""
         from ffsr_plan.viewer import page
 
-        Path(path).write_text(page(self), encoding="utf-8")
+        Path(path).write_text(page(self, title), encoding="utf-8")
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ffsr_plan.collision import Nearest, obstacle_query, self_query
-from ffsr_plan.edges import Verdict, certify
+from ffsr_plan.edges import Verdict, certify, clearance_bound
 from ffsr_plan.errors import GoalInCollision, NoPath, StartInCollision
 from ffsr_plan.inputs import Array, IntArray, frozen
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.objective import nearness, objective, path_length
 from ffsr_plan.problem import Problem
 from ffsr_plan.travel import swing
+
+_BOUND_GAP = 1e-3  # [m] between the clearance proven along a path and the least one met
 
 
 class Certificate(NamedTuple):
@@ -101,17 +106,18 @@ class Roadmap:
 
     def certificate(self, path: IntArray) -> Certificate:
         """Sum up the proofs, after certifying every edge of `path`."""
-        along = [
-            self.certify(i, int(j), int(k))
-            for i, (j, k) in enumerate(zip(path[:-1], path[1:], strict=True))
-        ]
-        free = sum(v.free for v in self._verdicts.values())
+        edges = [(i, int(j), int(k)) for i, (j, k) in enumerate(pairwise(path))]
+        free = all(self.certify(*edge).free for edge in edges)
+        bounds = (
+            [clearance_bound(*self._question(*edge), _BOUND_GAP) for edge in edges] if free else []
+        )
+        proven = sum(v.free for v in self._verdicts.values())
         return Certificate(
-            edges_free=free,
-            edges_blocked=len(self._verdicts) - free,
+            edges_free=proven,
+            edges_blocked=len(self._verdicts) - proven,
             node_queries=self._node_queries,
             edge_queries=self._obstacles.count - self._node_queries + self._self.count,
-            least_clearance=min(v.least_clearance for v in along),
+            least_clearance=min(bounds, default=0.0),
         )
 
     def no_path(self, layer: int) -> NoPath:
@@ -128,14 +134,19 @@ class Roadmap:
         return NoPath(layer, tuple(order), self.lattice.divisions)
 
     def _examine(self, layer: int, tail: int, head: int) -> Verdict:
+        return certify(*self._question(layer, tail, head), self.problem.tolerance)
+
+    def _question(
+        self, layer: int, tail: int, head: int
+    ) -> tuple[Callable[[float], float], tuple[float, float], float]:
+        """What a proof about an edge needs: clearance along it, at its ends, and the travel."""
         speed = float(self.lattice.base_travel[tail, head] + np.max(self._swing.world, initial=0.0))
         ends = (float(self.clearances[layer, tail]), float(self.clearances[layer + 1, head]))
-        return certify(
-            lambda time: self._obstacles.distance(self._on_edge(layer, tail, head, time)),
-            ends,
-            speed,
-            self.problem.tolerance,
-        )
+
+        def clearance_at(time: float) -> float:
+            return self._obstacles.distance(self._on_edge(layer, tail, head, time))
+
+        return clearance_at, ends, speed
 
     def _on_edge(self, layer: int, tail: int, head: int, time: float) -> Array:
         q = self._nominal_at(layer, time).copy()
@@ -170,12 +181,13 @@ class Roadmap:
         speed = max(float(in_base[p.first] + in_base[p.second]) for p in pairs)
         ends = self._self.distances(corners)
         for i in range(m):
+            between = partial(self._self_distance, i)
             verdict = certify(
-                lambda time, i=i: self._self.distance(self._nominal_at(i, time)),
-                (float(ends[i]), float(ends[i + 1])),
-                speed,
-                self.problem.tolerance,
+                between, (float(ends[i]), float(ends[i + 1])), speed, self.problem.tolerance
             )
             if not verdict.free:
                 near = self._self.nearest(self._nominal_at(i, verdict.time))
                 raise NoPath(i + 1, (near.link, near.other), m)
+
+    def _self_distance(self, layer: int, time: float) -> float:
+        return self._self.distance(self._nominal_at(layer, time))

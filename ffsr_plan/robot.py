@@ -221,8 +221,12 @@ def robot_from_urdf(text: str, name: str, package_dirs: Sequence[str] = ()) -> S
     folders = list(package_dirs)
     try:
         model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
-        collision = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION, package_dirs=folders)
-        visual = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.VISUAL, package_dirs=folders)
+        collision = pin.buildGeomFromUrdfString(
+            model, text, pin.GeometryType.COLLISION, package_dirs=folders
+        )
+        visual = pin.buildGeomFromUrdfString(
+            model, text, pin.GeometryType.VISUAL, package_dirs=folders
+        )
     except ValueError as error:
         reason = str(error).strip().splitlines()[-1]
         raise InvalidInput(name, reason, "a URDF that Pinocchio can load") from None

@@ -34,7 +34,9 @@ class Scene:
         c = finite_array("scene centers", centers, (-1, 3))
         r = finite_array("scene radii", radii, (-1,))
         if len(c) != len(r):
-            raise InvalidInput("scene radii", f"{len(r)} radii", f"one for each of {len(c)} centers")
+            raise InvalidInput(
+                "scene radii", f"{len(r)} radii", f"one for each of {len(c)} centers"
+            )
         for i in np.flatnonzero(r <= 0.0)[:1]:
             raise InvalidInput(f"scene radii[{i}]", float(r[i]), "greater than 0 m")
         object.__setattr__(self, "centers", c)

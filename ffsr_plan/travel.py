@@ -90,4 +90,6 @@ def _reach(geometry: pin.GeometryObject) -> float:
     if isinstance(shape, coal.Sphere):
         return float(np.linalg.norm(placement.translation) + shape.radius)
     corners = np.array(list(product((-1.0, 1.0), repeat=3))) * shape.halfSide
-    return float(np.max(np.linalg.norm(corners @ placement.rotation.T + placement.translation, axis=1)))
+    return float(
+        np.max(np.linalg.norm(corners @ placement.rotation.T + placement.translation, axis=1))
+    )

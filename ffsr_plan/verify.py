@@ -72,7 +72,9 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
         checked += len(q)
     least, apart = min(clearances), min(separations)
     if least <= 0.0:
-        problems.append(f"a link is {-least:.3g} m inside an obstacle on edge {np.argmin(clearances)}")
+        problems.append(
+            f"a link is {-least:.3g} m inside an obstacle on edge {np.argmin(clearances)}"
+        )
     if apart <= 0.0:
         problems.append(f"two links touch on edge {int(np.argmin(separations))}")
     residual = _momentum_residual(plan, bodies) if plan.problem.mode == "free-flying" else None

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ffsr_plan import paper
 from ffsr_plan.colony.records import Cycle, History, OnCycle, Search, Trails
@@ -43,7 +44,7 @@ class AntSystem:
     beta: float = paper.BETA
     rho: float = paper.RHO
     Q: float = paper.Q
-    C: float = 1.0
+    C: float = 10.0
 
     def __post_init__(self) -> None:
         checked = {
@@ -70,7 +71,7 @@ class AntSystem:
         layers = np.arange(m)
         walk = _Walk(self, roadmap, rng)
         tau = np.full((m, n, n), self.C)
-        walked = np.zeros((m, n, n), dtype=np.int64)
+        walked, laid = np.zeros((m, n, n), dtype=np.int64), np.zeros((m, n, n))
         records: list[tuple[float, float, float, int]] = []
         best, best_path = np.inf, np.zeros(m + 1, dtype=np.int64)
         for cycle in range(1, self.cycles + 1):
@@ -81,7 +82,9 @@ class AntSystem:
                 best, best_path = float(costs[leader]), paths[leader]
             edges = (np.broadcast_to(layers, (self.ants, m)), paths[:, :-1], paths[:, 1:])
             tau *= self.rho
-            np.add.at(tau, edges, (self.Q / costs)[:, None])
+            deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
+            np.add.at(tau, edges, deposit)
+            np.add.at(laid, edges, deposit)
             np.maximum(tau, _FAINT, out=tau)
             np.add.at(walked, edges, 1)
             distinct = len(np.unique(paths, axis=0))
@@ -92,7 +95,7 @@ class AntSystem:
                 on_cycle(Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau))
             if distinct == 1:
                 break
-        return Search(frozen(best_path), _history(records), _trails(walked, tau))
+        return Search(frozen(best_path), _history(records), _trails(walked, laid, tau))
 
 
 class _Walk:
@@ -150,7 +153,7 @@ class _Walk:
             self._furthest = max(self._furthest, layer + 1)
         return heads
 
-    def _draw(self, tails: IntArray, allowed: Array, tau: Array) -> IntArray:
+    def _draw(self, tails: IntArray, allowed: NDArray[np.bool_], tau: Array) -> IntArray:
         """Roulette wheel of Eq. 11. Weights are scaled by the row's largest: ratios are all."""
         log_weight = self._alpha * np.log(tau[tails]) + self._visibility[tails]
         log_weight[~allowed] = -np.inf
@@ -185,10 +188,11 @@ def _history(records: list[tuple[float, float, float, int]]) -> History:
         frozen(np.array(best)),
         frozen(np.array(iteration_best)),
         frozen(np.array(mean)),
-        np.array(distinct, dtype=np.int64),
+        frozen(np.array(distinct, dtype=np.int64)),
     )
 
 
-def _trails(walked: IntArray, tau: Array) -> Trails:
-    layer, tail, head = np.nonzero(walked)
-    return Trails(layer, tail, head, walked[layer, tail, head], tau[layer, tail, head])
+def _trails(walked: IntArray, laid: Array, tau: Array) -> Trails:
+    used = np.nonzero(walked)
+    layer, tail, head = used
+    return Trails(layer, tail, head, walked[used], laid[used], tau[used])

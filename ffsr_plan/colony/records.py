@@ -56,6 +56,8 @@ class Trails(NamedTuple):
     """Node reached on the next layer."""
     ants: IntArray
     """How many ants walked it, all cycles together (Eq. 10 summed over time)."""
+    laid: Array
+    """Pheromone that they laid on it, all cycles together, before any evaporated."""
     pheromone: Array
     """tau at the end."""
 

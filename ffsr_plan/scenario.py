@@ -1,0 +1,223 @@
+"""Scenario files: TOML, through a schema, to a `Problem` with a planner and a seed."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple
+
+import pydantic
+from pydantic import BaseModel, ConfigDict, Field
+
+from ffsr_plan import bundled
+from ffsr_plan.axes import Axis, Lattice
+from ffsr_plan.colony import AntSystem
+from ffsr_plan.errors import InvalidInput, unknown_name
+from ffsr_plan.paper import DIVISIONS
+from ffsr_plan.planner import PLANNERS
+from ffsr_plan.problem import MODES, Problem
+from ffsr_plan.robot import load_robot
+from ffsr_plan.scene import Scene
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Triple = Annotated[list[Number], Field(min_length=3, max_length=3)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class RobotTable(_Table):
+    """The table `[robot]`."""
+
+    urdf: str
+    """Name of a bundled robot, or a path relative to the scenario file."""
+    mode: str = MODES[0]
+    package_dirs: list[str] = []
+
+
+class PoseTable(_Table):
+    """The table `[start]`."""
+
+    position: Triple = [0.0, 0.0, 0.0]
+    attitude: Triple = [0.0, 0.0, 0.0]
+    """ZYX angles alpha, beta, gamma [rad]."""
+    joints: dict[str, Number] = {}
+    """Joints that are not named are at zero."""
+
+
+class GoalTable(_Table):
+    """The table `[goal]`."""
+
+    position: Triple = [0.0, 0.0, 0.0]
+    attitude: Triple | None = None
+    joints: dict[str, Number] = {}
+
+
+class ObstacleTable(_Table):
+    """The table `[[obstacles]]`."""
+
+    center: Triple
+    radius: Number
+
+
+class AxisTable(_Table):
+    """The tables `lateral` and `normal`."""
+
+    half_count: int
+    spacing: Number
+
+
+class LatticeTable(_Table):
+    """The table `[lattice]`."""
+
+    divisions: int = DIVISIONS
+    lateral: AxisTable | None = None
+    normal: AxisTable | None = None
+
+
+class ObjectiveTable(_Table):
+    """The table `[objective]`."""
+
+    delta: Number = 0.0
+    length_unit: Number = 1.0
+    clearance_cap: Number | None = None
+    position_weight: Number = 1.0
+    rotation_weight: Number = 1.0
+
+
+class PlannerTable(_Table):
+    """The table `[planner]`."""
+
+    name: Literal["ant-system"] = "ant-system"
+    seed: int = 0
+    ants: int | None = None
+    cycles: int | None = None
+    alpha: Number | None = None
+    beta: Number | None = None
+    rho: Number | None = None
+    Q: Number | None = None
+    C: Number | None = None
+
+
+class ScenarioFile(_Table):
+    """A whole scenario file."""
+
+    title: str = ""
+    robot: RobotTable
+    start: PoseTable = PoseTable()
+    goal: GoalTable
+    obstacles: list[ObstacleTable] = []
+    lattice: LatticeTable
+    objective: ObjectiveTable = ObjectiveTable()
+    planner: PlannerTable = PlannerTable()
+
+
+class Scenario(NamedTuple):
+    """What a scenario file asks for."""
+
+    title: str
+    problem: Problem
+    planner: AntSystem
+    seed: int
+
+
+def load_scenario(source: str | Path) -> Problem:
+    """The problem of a scenario file; see `read_scenario`."""
+    return read_scenario(source).problem
+
+
+def read_scenario(source: str | Path) -> Scenario:
+    """Read a scenario.
+
+    Args:
+        source: path to a TOML file, or name of a bundled scenario ("fig2a").
+
+    Raises:
+        InvalidInput: no such file, not TOML, an unknown key (the nearest one is suggested), a wrong
+            type or a value that is not allowed; the message names file and field.
+    """
+    path = bundled.find("scenarios", str(source), ".toml") or Path(source)
+    what = f"scenario '{source}'"
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise InvalidInput(what, str(error), "a TOML file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        known = ", ".join(bundled.names("scenarios", ".toml"))
+        raise InvalidInput(
+            what, type(error).__name__, f"a readable file, or one of: {known}"
+        ) from None
+    try:
+        file = ScenarioFile.model_validate(data)
+    except pydantic.ValidationError as error:
+        raise _explain(what, error.errors()[0]) from None
+    try:
+        return _build(file, path.parent)
+    except InvalidInput as error:
+        raise InvalidInput(f"{what}: {error.what}", error.value, error.allowed) from None
+
+
+def _build(file: ScenarioFile, folder: Path) -> Scenario:
+    source = file.robot.urdf
+    robot = load_robot(
+        folder / source if source.endswith(".urdf") else source,
+        [folder / entry for entry in file.robot.package_dirs],
+    )
+    if file.goal.attitude is not None and file.robot.mode == "free-flying":
+        raise InvalidInput(
+            "goal.attitude",
+            file.goal.attitude,
+            "no goal attitude in the mode free-flying, where it follows from the arms; "
+            "leave it out, or use mode = 'attitude-held'",
+        )
+    start = robot.configuration(**file.start.model_dump())
+    goal = robot.configuration(
+        file.goal.position, file.goal.attitude or (0.0, 0.0, 0.0), file.goal.joints
+    )
+    axes = {
+        name: Axis(**table.model_dump())
+        for name in ("lateral", "normal")
+        if (table := getattr(file.lattice, name)) is not None
+    }
+    problem = Problem(
+        robot,
+        Scene([o.center for o in file.obstacles], [o.radius for o in file.obstacles]),
+        start=start,
+        goal=goal,
+        mode=file.robot.mode,
+        lattice=Lattice(divisions=file.lattice.divisions, **axes),
+        **file.objective.model_dump(),
+    )
+    settings = file.planner.model_dump(exclude={"name", "seed"}, exclude_none=True)
+    if file.planner.seed < 0:
+        raise InvalidInput("planner.seed", file.planner.seed, "a whole number of at least 0")
+    return Scenario(file.title, problem, PLANNERS[file.planner.name](**settings), file.planner.seed)
+
+
+def _explain(what: str, error: Any) -> InvalidInput:  # noqa: ANN401 - pydantic's error record
+    """A pydantic error in our words, with the nearest key for a misspelt one."""
+    place = [str(step) for step in error["loc"]]
+    where = f"{what}: {'.'.join(place)}"
+    if error["type"] == "extra_forbidden":
+        return unknown_name(f"{what}: unknown key", ".".join(place), _keys_beside(place))
+    if error["type"] == "missing":
+        return InvalidInput(where, None, "this key is required")
+    return InvalidInput(where, error["input"], error["msg"])
+
+
+def _keys_beside(place: list[str]) -> list[str]:
+    """Full names of the keys allowed in the table that `place` lies in."""
+    table: type[BaseModel] = ScenarioFile
+    for step in place[:-1]:
+        if step.isdigit():
+            continue
+        annotation = table.model_fields[step].annotation
+        inner = [annotation, *getattr(annotation, "__args__", ())]
+        table = next(t for t in inner if isinstance(t, type) and issubclass(t, BaseModel))
+    return [".".join([*place[:-1], key]) for key in table.model_fields]
