@@ -58,6 +58,8 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
         axes.add_collection(outline)
     track = plan.at(np.linspace(0.0, 1.0, 401))[:, :3] @ view.T
     axes.plot(*track.T, color=_PATH, lw=1.8, zorder=6, label="base origin")
+    axes.plot([], [], color="#7a5fa8", lw=1.2, label="ants' trails, dark where most was laid")
+    axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
     axes.set_aspect("equal")
     axes.autoscale_view()
     axes.margins(0.03)
@@ -65,7 +67,7 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
     axes.set_ylabel("lateral x' [m]")
     axes.set_title(
         f"L = {plan.length:.2f} m, F = {plan.objective:.1f}, δ = {problem.delta:g}, "
-        f"least node clearance {plan.clearances.min():.3f} m"
+        f"proven clearance {plan.certificate.least_clearance:.3f} m"
     )
     return figure
 
@@ -100,9 +102,12 @@ def convergence_figure(plan: Plan) -> Figure:
     axes.set_ylabel("F")
     other = axes.twinx()
     other.plot(cycles, history.distinct, ":", color="#3b4252", lw=1.0)
-    other.set_ylabel("different paths (dotted)")
+    other.set_ylabel("different paths")
     other.set_ylim(bottom=0)
-    axes.legend(frameon=False)
+    axes.plot([], [], ":", color="#3b4252", lw=1.0, label="different paths")
+    figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
+    )
     return figure
 
 

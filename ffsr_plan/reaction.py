@@ -76,8 +76,13 @@ class Reaction:
         edges = len(steps)
         times = (np.arange(substeps)[:, None] + 0.5 * (1.0 + _X)) / substeps
         theta = begin[:, None, None] + times[None, :, :, None] * steps[:, None, None]
-        maps = connections(robot, theta.reshape(-1, robot.nd))
-        rates = np.einsum("eknij,ej->ekni", maps.reshape(edges, substeps, _ORDER, 3, -1), steps)
+        maps = connections(robot, theta.reshape(edges * substeps * _ORDER, robot.nd))
+        maps = maps.reshape(edges, substeps, _ORDER, 3, robot.nd)
+        # where the arms' shares cancel, their sizes and not the sum's set the rounding
+        self._scale = float(
+            np.max(np.einsum("eknij,ej->ekn", np.abs(maps), np.abs(steps)), initial=0)
+        )
+        rates = np.einsum("eknij,ej->ekni", maps, steps)
         self._substeps = substeps
         self._coefficients = np.einsum("ln,ekni->ekli", _TO_COEFFICIENTS, rates)
         zero, one = np.zeros((edges, substeps)), np.ones((edges, substeps))
@@ -95,9 +100,7 @@ class Reaction:
 
     def _converged(self) -> bool:
         sizes = np.max(np.abs(self._coefficients), axis=(0, 1, 3), initial=0.0)
-        return bool(
-            self.error <= _ANGLE_TOLERANCE and sizes[-1] <= _RATE_TOLERANCE * max(sizes[0], 1e-6)
-        )
+        return bool(self.error <= _ANGLE_TOLERANCE and sizes[-1] <= _RATE_TOLERANCE * self._scale)
 
     def _step(self, coefficients: Array, begin: Array, end: Array) -> Array:
         """Rotation (..., 4) over local times begin -> end (in [0, 1]) of a substep."""

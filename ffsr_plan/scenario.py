@@ -156,7 +156,9 @@ def read_scenario(source: str | Path) -> Scenario:
     try:
         file = ScenarioFile.model_validate(data)
     except pydantic.ValidationError as error:
-        raise _explain(what, error.errors()[0]) from None
+        # a misspelt key also leaves the right one missing: speak of the misspelling first
+        first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
+        raise _explain(what, first) from None
     try:
         return _build(file, path.parent)
     except InvalidInput as error:

@@ -1,0 +1,20 @@
+"""Fixtures of the benchmarks."""
+
+import pytest
+
+import ffsr_plan as fp
+
+
+@pytest.fixture(scope="session")
+def problem():
+    """41 layers of 41 nodes, 7 box links, 6 spheres: the lattice that the figures speak of."""
+    scenario = fp.load_scenario("fig2a")
+    return fp.Problem(
+        scenario.robot,
+        scenario.scene,
+        scenario.start,
+        scenario.goal,
+        delta=scenario.delta,
+        length_unit=scenario.length_unit,
+        lattice=fp.Lattice(40, fp.Axis(20, 0.15)),
+    )

@@ -1,0 +1,88 @@
+"""What the parts of a plan cost, as ratios to `pin.computeDistances` over the lattice's nodes.
+
+`pytest benchmarks` runs them; the ratio stands in each benchmark's extra_info.
+"""
+
+import numpy as np
+import pytest
+from reference import Reference, record
+
+import ffsr_plan as fp
+from ffsr_plan.collision import obstacle_query
+from ffsr_plan.lattice import LayeredLattice
+from ffsr_plan.reaction import Reaction
+from ffsr_plan.roadmap import Roadmap
+
+
+@pytest.fixture(scope="module")
+def reference(problem):
+    return Reference(problem)
+
+
+def test_reference_compute_distances(benchmark, reference):
+    benchmark(reference.run)
+    record(benchmark, reference)
+
+
+def test_node_clearances(benchmark, problem, reference):
+    """All node clearances of the lattice, its nominal motion given."""
+    lattice = LayeredLattice(problem)
+    query = obstacle_query(problem.robot, problem.scene)
+
+    def evaluate():
+        inner = [query.distances(lattice.layer(i)) for i in range(1, lattice.divisions)]
+        ends = [query.distances(lattice.layer(i)[[lattice.origin]]) for i in (0, -1)]
+        return np.concatenate([ends[0], *inner, ends[1]])
+
+    found = benchmark(evaluate)
+    assert np.allclose(found, reference.run(), atol=1e-12)
+    record(benchmark, reference)
+
+
+def test_reaction_of_the_nominal_joint_path(benchmark, problem, reference):
+    joints = LayeredLattice(problem).nominal.joint_values
+    benchmark(lambda: Reaction(problem.robot, joints))
+    record(benchmark, reference)
+
+
+def test_roadmap_with_all_node_clearances(benchmark, problem, reference):
+    benchmark(lambda: Roadmap(problem))
+    record(benchmark, reference)
+
+
+def test_certification_of_1000_edges(benchmark, problem, reference):
+    """Edges between neighbouring offsets all over the lattice, none of them known before."""
+    edges = [
+        (int(layer), int(tail), int(np.clip(tail + step, 0, 40)))
+        for layer, tail, step in np.random.default_rng(0).integers(
+            (1, 0, -3), (39, 41, 4), (1000, 3)
+        )
+    ]
+
+    def fresh():
+        return (Roadmap(problem),), {}
+
+    def certify(roadmap):
+        return sum(roadmap.certify(*edge).free for edge in edges)
+
+    free = benchmark.pedantic(certify, setup=fresh, rounds=10)
+    assert 0 < free < 1000
+    record(benchmark, reference)
+
+
+def test_one_cycle_of_the_ant_system(benchmark, problem, reference):
+    """30 ants, once: walking, and certifying the edges that they walk."""
+
+    def fresh():
+        return (Roadmap(problem), np.random.default_rng(0)), {}
+
+    benchmark.pedantic(fp.AntSystem(cycles=1).search, setup=fresh, rounds=10)
+    record(benchmark, reference)
+
+
+def test_plan_with_the_ant_system(benchmark, problem, reference):
+    """`plan` as a whole, until stagnation."""
+    plan = benchmark.pedantic(lambda: fp.plan(problem, fp.AntSystem(), seed=0), rounds=3)
+    benchmark.extra_info["cycles"] = len(plan.history.best)
+    benchmark.extra_info["objective"] = plan.objective
+    record(benchmark, reference)

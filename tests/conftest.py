@@ -1,0 +1,27 @@
+"""Fixtures shared by all tests."""
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+import ffsr_plan as fp
+
+settings.register_profile(
+    "ffsr", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("ffsr")
+
+
+@pytest.fixture(scope="session")
+def robot():
+    return fp.load_robot("planar_dual_arm")
+
+
+@pytest.fixture(scope="session")
+def point():
+    return fp.load_robot("point")
+
+
+@pytest.fixture(scope="session")
+def fig2a_plan():
+    scenario = fp.read_scenario("fig2a")
+    return fp.plan(scenario.problem, scenario.planner, scenario.seed)

@@ -1,0 +1,222 @@
+"""Every bad input ends in an error that names it, and never in a guess."""
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+
+
+def arguments(robot, **changes):
+    base = {
+        "robot": robot,
+        "scene": fp.Scene([[5, 3, 0]], [0.5]),
+        "start": robot.neutral(),
+        "goal": robot.configuration((10, 0, 0), joints={"left_1": 0.5}),
+        "lattice": fp.Lattice(10, fp.Axis(3, 0.3)),
+    }
+    return base | changes
+
+
+ARMS_THROUGH_EACH_OTHER = {"left_1": -1.6, "left_2": -1.5, "right_1": 1.6, "right_2": 1.5}
+
+
+def changed(q, index, value):
+    q = np.array(q)
+    q[index] = value
+    return q
+
+
+def test_an_unknown_robot_is_named_with_the_nearest_one():
+    with pytest.raises(fp.InvalidInput, match="did you mean 'planar_dual_arm'"):
+        fp.load_robot("planar_dualarm")
+
+
+def test_a_missing_urdf_file_is_named():
+    with pytest.raises(fp.InvalidInput, match=r"nowhere/robot\.urdf.*existing"):
+        fp.load_robot("nowhere/robot.urdf")
+
+
+def test_an_unknown_joint_is_named_with_the_nearest_one(robot):
+    with pytest.raises(fp.InvalidInput, match="did you mean 'left_1'"):
+        robot.configuration(joints={"left1": 0.2})
+
+
+def test_an_unknown_mode_is_named_with_the_nearest_one(robot):
+    with pytest.raises(fp.InvalidInput, match=r"mode.*did you mean 'free-flying'"):
+        fp.Problem(**arguments(robot, mode="free_flying"))
+
+
+@pytest.mark.parametrize("which", ["start", "goal"])
+@pytest.mark.parametrize("q", [[0.0] * 12, [[0.0] * 13], "home", None, [0.0] * 14])
+def test_a_q_of_wrong_length_or_type_is_refused(robot, which, q):
+    with pytest.raises(fp.InvalidInput, match=f"{which}.*shape"):
+        fp.Problem(**arguments(robot, **{which: q}))
+
+
+@pytest.mark.parametrize("w", [0.0, 0.99, 1.01, -1.001])
+def test_a_quaternion_that_is_not_of_norm_one_is_refused(robot, w):
+    with pytest.raises(fp.InvalidInput, match=r"quaternion.*norm"):
+        fp.Problem(**arguments(robot, start=changed(robot.neutral(), 6, w)))
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_what_is_not_finite_is_refused_everywhere(robot, bad):
+    cases = [
+        lambda: fp.Problem(**arguments(robot, start=changed(robot.neutral(), 1, bad))),
+        lambda: fp.Problem(**arguments(robot, goal=changed(robot.neutral(), 8, bad))),
+        lambda: fp.Scene([[0, bad, 0]], [1.0]),
+        lambda: fp.Scene([[0, 0, 0]], [bad]),
+        lambda: fp.Axis(2, bad),
+        lambda: fp.Problem(**arguments(robot, delta=bad)),
+        lambda: fp.Problem(**arguments(robot, length_unit=bad)),
+        lambda: fp.Problem(**arguments(robot, clearance_cap=bad)),
+        lambda: fp.AntSystem(C=bad),
+        lambda: fp.AntSystem(Q=bad),
+        lambda: robot.configuration((0, bad, 0)),
+        lambda: robot.configuration(attitude=(bad, 0, 0)),
+        lambda: robot.configuration(joints={"left_1": bad}),
+        lambda: fp.momentum.connection(robot, changed(robot.neutral(), 9, bad)),
+        lambda: fp.clearance(robot, fp.Scene(), changed(robot.neutral(), 0, bad)),
+    ]
+    for case in cases:
+        with pytest.raises(fp.InvalidInput, match="finite"):
+            case()
+
+
+@pytest.mark.parametrize("radius", [0.0, -0.1])
+def test_a_radius_of_zero_or_less_is_refused_with_its_index(radius):
+    with pytest.raises(fp.InvalidInput, match=r"radii\[1\].*greater than 0"):
+        fp.Scene([[0, 0, 0], [1, 0, 0]], [0.5, radius])
+
+
+def test_centers_and_radii_must_match():
+    with pytest.raises(fp.InvalidInput, match="one for each of 2 centers"):
+        fp.Scene([[0, 0, 0], [1, 0, 0]], [0.5])
+    with pytest.raises(fp.InvalidInput, match="shape"):
+        fp.Scene([[0, 0], [1, 0]], [0.5, 0.5])
+
+
+def test_joints_outside_their_limits_are_refused_by_name(robot):
+    with pytest.raises(fp.InvalidInput, match=r"left_1.*-1\.8 to 1\.8"):
+        robot.configuration(joints={"left_1": 1.9})
+    with pytest.raises(fp.InvalidInput, match=r"goal \(joint right_3\)"):
+        fp.Problem(**arguments(robot, goal=changed(robot.neutral(), -1, 3.0)))
+
+
+@pytest.mark.parametrize("divisions", [1, 0, -3, 2.5, "40", True])
+def test_fewer_than_two_divisions_are_refused(divisions):
+    with pytest.raises(fp.InvalidInput, match=r"divisions.*at least 2"):
+        fp.Lattice(divisions)
+
+
+@pytest.mark.parametrize("half_count", [0, -1, 1.5])
+def test_a_half_count_below_one_is_refused(half_count):
+    with pytest.raises(fp.InvalidInput, match=r"half_count.*at least 1"):
+        fp.Axis(half_count, 0.1)
+
+
+@pytest.mark.parametrize("spacing", [0.0, -0.1])
+def test_a_spacing_of_zero_is_refused(spacing):
+    with pytest.raises(fp.InvalidInput, match=r"spacing.*greater than 0"):
+        fp.Axis(2, spacing)
+
+
+def test_a_negative_delta_is_refused(robot):
+    with pytest.raises(fp.InvalidInput, match=r"delta.*at least 0"):
+        fp.Problem(**arguments(robot, delta=-1e-9))
+
+
+@pytest.mark.parametrize("rho", [0.0, 1.0, -0.1, 1.1])
+def test_rho_outside_zero_and_one_is_refused(rho):
+    with pytest.raises(fp.InvalidInput, match=r"rho.*greater than 0 and less than 1"):
+        fp.AntSystem(rho=rho)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"ants": 0}, {"cycles": 0}, {"alpha": -1}, {"beta": -1}, {"Q": 0}, {"C": 0}]
+)
+def test_other_parameters_of_the_ants_are_checked_too(wrong):
+    with pytest.raises(fp.InvalidInput, match=next(iter(wrong))):
+        fp.AntSystem(**wrong)
+
+
+def test_a_start_that_is_the_goal_is_nothing_to_reach(robot):
+    with pytest.raises(fp.InvalidInput, match="differs from the start"):
+        fp.Problem(**arguments(robot, goal=robot.neutral()))
+    turned = robot.configuration(attitude=(0.5, 0, 0))  # not demanded in this mode
+    with pytest.raises(fp.InvalidInput, match="differs from the start"):
+        fp.Problem(**arguments(robot, goal=turned, lattice=fp.Lattice(4)))
+
+
+def test_the_same_attitude_with_the_other_sign_is_nothing_to_reach(robot):
+    opposite = np.array(robot.neutral())
+    opposite[3:7] *= -1
+    with pytest.raises(fp.InvalidInput, match="differs from the start"):
+        fp.Problem(**arguments(robot, goal=opposite, mode="attitude-held", lattice=fp.Lattice(4)))
+
+
+def test_a_lateral_axis_needs_a_direction_of_travel(robot):
+    with pytest.raises(fp.InvalidInput, match="no direction of travel"):
+        fp.Problem(**arguments(robot, goal=robot.configuration(joints={"left_1": 1.0})))
+
+
+@pytest.mark.parametrize(
+    ("behind", "error"), [(-0.5, fp.StartInCollision), (9.5, fp.GoalInCollision)]
+)
+def test_a_start_or_goal_in_collision_names_link_obstacle_and_depth(robot, behind, error):
+    scene = fp.Scene([[5, 3, 0], [behind, 0, 0]], [0.5, 0.3])
+    with pytest.raises(error, match=r"link 'base' is 0\.05\d* m inside obstacle 1") as caught:
+        fp.plan(fp.Problem(**arguments(robot, scene=scene)))
+    assert (caught.value.link, caught.value.obstacle) == ("base", 1)
+    assert caught.value.depth == pytest.approx(0.05, abs=0.01)  # the goal's base has turned
+
+
+def test_a_start_in_self_collision_names_both_links(robot):
+    folded = robot.configuration(joints=ARMS_THROUGH_EACH_OTHER)
+    with pytest.raises(fp.StartInCollision, match=r"link '\w+' is .* inside link '\w+'"):
+        fp.plan(fp.Problem(**arguments(robot, start=folded)))
+
+
+def test_a_goal_in_self_collision_names_both_links(robot):
+    folded = robot.configuration((10, 0, 0), joints=ARMS_THROUGH_EACH_OTHER)
+    with pytest.raises(fp.GoalInCollision, match=r"link '\w+' is .* inside link '\w+'"):
+        fp.plan(fp.Problem(**arguments(robot, goal=folded)))
+
+
+def test_obstacles_that_close_every_way_are_named(robot):
+    scene = fp.Scene([[5, y, 0] for y in np.arange(-6, 7)], [0.8] * 13)
+    with pytest.raises(fp.NoPath, match=r"layer \d of 10 .*closed by obstacles") as caught:
+        fp.plan(fp.Problem(**arguments(robot, scene=scene)))
+    assert 3 <= caught.value.layer <= 5
+    assert caught.value.obstacles
+
+
+def test_what_is_no_planner_or_no_seed_is_refused(robot):
+    problem = fp.Problem(**arguments(robot))
+    with pytest.raises(fp.InvalidInput, match="planner"):
+        fp.plan(problem, planner="ant-system")
+    for seed in (-1, 1.5, "0"):
+        with pytest.raises(fp.InvalidInput, match="seed"):
+            fp.plan(problem, seed=seed)
+
+
+def test_a_path_parameter_outside_zero_and_one_is_refused(fig2a_plan):
+    for s in (-1e-9, 1.0001, [0.5, 2.0], np.nan):
+        with pytest.raises(fp.InvalidInput, match=r"\bs\b"):
+            fig2a_plan.at(s)
+
+
+def test_every_error_has_one_root_and_survives_pickling():
+    import pickle
+
+    errors = [
+        fp.InvalidInput("delta", -1, "at least 0"),
+        fp.StartInCollision("base", 3, 0.1),
+        fp.GoalInCollision("base", "arm", 0.1),
+        fp.NoPath(3, (1, "arm"), 40),
+    ]
+    for error in errors:
+        assert isinstance(error, fp.FfsrPlanError)
+        again = pickle.loads(pickle.dumps(error))
+        assert str(again) == str(error)
+        assert again.__dict__ == error.__dict__

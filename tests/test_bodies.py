@@ -1,0 +1,66 @@
+"""The reading of a URDF that verification relies on, against Pinocchio and closed forms."""
+
+import coal
+import numpy as np
+import pinocchio as pin
+import pytest
+from builders import random_configuration, random_robot, random_scene
+from closed_forms import clearance, clearances
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ffsr_plan.bodies import Bodies, Shape, pose, separation
+
+seeds = st.integers(0, 10_000)
+
+
+@given(seeds)
+def test_link_poses_agree_with_pinocchio(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    q = random_configuration(robot, rng)
+    joints = {k: np.array([v]) for k, v in robot.components(q).joints.items()}
+    poses = Bodies(robot.urdf).link_poses(pose(q[None, :3], q[None, 3:7]), joints)
+    data = robot.model.createData()
+    pin.framesForwardKinematics(robot.model, data, q)
+    for name, found in poses.items():
+        expected = data.oMf[robot.model.getFrameId(name)].homogeneous
+        assert np.allclose(found[0], expected, atol=1e-12)
+
+
+@given(seeds)
+def test_distances_agree_with_the_scalar_closed_form(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    scene = random_scene(rng, low=-2, high=2)
+    q = np.array([random_configuration(robot, rng) for _ in range(3)])
+    expected = [clearance(robot, scene, each) for each in q]
+    assert np.allclose(clearances(robot, scene, q), expected, atol=1e-12)
+
+
+@given(seeds)
+def test_separation_is_positive_exactly_when_two_boxes_are_apart(seed):
+    rng = np.random.default_rng(seed)
+    halves = rng.uniform(0.1, 1.0, (2, 3))
+    placed = [
+        pin.SE3(pin.exp3(rng.normal(size=3)), far * rng.uniform(-1, 1, 3)) for far in (0.0, 2.0)
+    ]
+    solids = [coal.Box(2 * h) for h in halves]
+    transforms = [coal.Transform3s(p.rotation, p.translation) for p in placed]
+    distance = coal.distance(
+        solids[0], transforms[0], solids[1], transforms[1],
+        coal.DistanceRequest(), coal.DistanceResult(),
+    )  # fmt: skip
+    shapes = [Shape("", np.eye(4), h, float(np.linalg.norm(h))) for h in halves]
+    poses = [p.homogeneous[None] for p in placed]
+    found = separation(shapes[0], poses[0], shapes[1], poses[1])[0]
+    assert (found > 0) == (distance > 0) or abs(distance) < 1e-6
+    assert found <= max(distance, 0.0) + 1e-6
+
+
+def test_separation_of_a_box_and_a_sphere_is_their_distance():
+    cube = Shape("", np.eye(4), np.ones(3), np.sqrt(3.0))
+    ball = Shape("", np.eye(4), None, 0.5)
+    away = np.eye(4)[None].copy()
+    away[0, 0, 3] = 2.0
+    here = np.eye(4)[None]
+    assert separation(cube, here, ball, away)[0] == pytest.approx(0.5)
+    assert separation(ball, away, cube, here)[0] == pytest.approx(0.5)

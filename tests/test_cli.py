@@ -1,0 +1,113 @@
+"""The command line: exit codes, results on disk, errors on standard error."""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from ffsr_plan.cli import RESULTS, app
+
+QUICK = """
+title = "quick"
+[robot]
+urdf = "point"
+[goal]
+position = [4.0, 0.0, 0.0]
+[[obstacles]]
+center = [2.0, 0.1, 0.0]
+radius = 0.3
+[lattice]
+divisions = 8
+lateral = { half_count = 3, spacing = 0.2 }
+[objective]
+delta = 0.1
+"""
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "quick.toml").write_text(QUICK)
+    return lambda *arguments: CliRunner().invoke(app, [str(a) for a in arguments])
+
+
+def test_plan_writes_everything_and_says_what_was_found(run, tmp_path):
+    result = run("plan", "quick.toml", "--seed", 3, "--out", "results")
+    assert result.exit_code == 0, result.output
+    for name in RESULTS:
+        assert (tmp_path / "results" / name).stat().st_size > 1000
+    for word in ("length L", "objective F", "attitude on arrival", "certified", "verified", "yes"):
+        assert word in result.stdout
+    saved = json.loads((tmp_path / "results" / "plan.json").read_text())
+    assert saved["seed"] == 3
+
+
+def test_verify_checks_a_saved_plan(run):
+    run("plan", "quick.toml", "--out", "results")
+    result = run("verify", "results/plan.json", "--samples", 100)
+    assert result.exit_code == 0
+    assert "yes" in result.stdout
+
+
+def test_existing_results_are_kept_unless_forced(run, tmp_path):
+    run("plan", "quick.toml", "--out", "results")
+    before = (tmp_path / "results" / "plan.json").read_bytes()
+    refused = run("plan", "quick.toml", "--out", "results", "--seed", 1)
+    assert refused.exit_code == 2
+    assert "--force" in refused.stderr
+    assert (tmp_path / "results" / "plan.json").read_bytes() == before
+    assert run("plan", "quick.toml", "--out", "results", "--seed", 1, "--force").exit_code == 0
+    assert (tmp_path / "results" / "plan.json").read_bytes() != before
+
+
+def test_demo_runs_and_never_overwrites_its_earlier_results(run, tmp_path):
+    assert run("demo").exit_code == 0
+    assert run("demo").exit_code == 0
+    assert (tmp_path / "ffsr-demo" / "plan.html").exists()
+    assert (tmp_path / "ffsr-demo-2" / "plan.html").exists()
+
+
+def test_robots_lists_the_bundled_ones(run):
+    result = run("robots")
+    assert result.exit_code == 0
+    assert "planar_dual_arm" in result.stdout
+    assert "left_1" in result.stdout
+
+
+def test_no_path_is_exit_status_1_with_the_reason_on_standard_error(run, tmp_path):
+    wall = "\n".join(
+        f"[[obstacles]]\ncenter = [2.0, {y / 2}, 0.0]\nradius = 0.4" for y in range(-4, 5)
+    )
+    (tmp_path / "wall.toml").write_text(QUICK.replace("[lattice]", wall + "\n[lattice]"))
+    result = run("plan", "wall.toml", "--out", "results")
+    assert result.exit_code == 1
+    assert "no path on this lattice: layer" in result.stderr.replace("\n", " ")
+    assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("plan", "missing.toml"),
+        ("plan", "quick.toml", "--planner", "ants"),
+        ("plan", "quick.toml", "--seed", "-1"),
+        ("plan", "quick.toml", "--seed", "one"),
+        ("plan", "quick.toml", "--out", "quick.toml"),
+        ("verify", "missing.json"),
+        ("verify", "quick.toml"),
+        ("fly",),
+    ],
+    ids=" ".join,
+)
+def test_bad_input_is_exit_status_2(run, arguments):
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert result.stderr.strip()
+    assert "Traceback" not in result.output
+
+
+def test_a_changed_plan_file_does_not_pass_as_verified(run, tmp_path):
+    run("plan", "quick.toml", "--out", "results")
+    path = tmp_path / "results" / "plan.json"
+    path.write_text(path.read_text().replace('"radii": [\n    0.3', '"radii": [\n    0.2'))
+    assert run("verify", path).exit_code == 2
