@@ -59,7 +59,18 @@ class DistanceQuery:
 
     def distances(self, configurations: Array) -> Array:
         """(N,) least distances at (N, nq)."""
-        return np.array([self._evaluate(q)[0] for q in configurations])
+        if self.empty:
+            return np.full(len(configurations), np.inf)
+        self.count += len(configurations)
+        model, data = self._model, self._data
+        geometry, geometry_data = self._geometry, self._geometry_data
+        compute, results = pin.computeDistances, geometry_data.distanceResults
+        return np.array(
+            [
+                results[compute(model, data, geometry, geometry_data, q)].min_distance
+                for q in configurations
+            ]
+        )
 
     def _evaluate(self, q: Array) -> tuple[float, int]:
         if self.empty:

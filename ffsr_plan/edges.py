@@ -68,10 +68,11 @@ def certify(
 def clearance_bound(
     clearance_at: Callable[[float], float], ends: tuple[float, float], speed: float, gap: float
 ) -> float:
-    """A proven lower bound on the clearance along an edge, within `gap` of the least clearance.
+    """A proven lower bound on the clearance along an edge, near the least clearance.
 
     The interval whose bound is lowest is halved until that bound is close to a clearance that was
-    really met.
+    really met: within `gap`, and within a tenth of it, so that an edge that keeps clear gets a
+    bound greater than zero.
 
     Args:
         clearance_at: clearance [m] at a time in (0, 1).
@@ -88,7 +89,7 @@ def clearance_bound(
 
     met = min(ends)
     heap = [interval(0.0, 1.0, *ends)]
-    while met - heap[0][0] > gap:
+    while met - heap[0][0] > max(min(gap, 0.1 * met), ROUNDING):
         _, begin, end, first, last = heapq.heappop(heap)
         middle = 0.5 * (begin + end)
         clearance = clearance_at(middle)

@@ -33,10 +33,7 @@ class Motion:
         begin = problem.robot.joint_values(problem.start)
         self.positions = frozen(np.array(positions, dtype=np.float64))
         self.joint_values = frozen(begin + progress[:, None] * problem.joint_travel)
-        if self._reacts:
-            self.attitudes = frozen(self.reaction.attitudes(problem.start[3:7]))
-        else:
-            self.attitudes = frozen(self._held(progress))
+        self.attitudes = frozen(self._attitudes(progress))
 
     @property
     def _reacts(self) -> bool:
@@ -44,8 +41,8 @@ class Motion:
 
     @cached_property
     def reaction(self) -> Reaction:
-        """The base rotation that the joint path brings about."""
-        return Reaction(self.problem.robot, self.joint_values)
+        """The base rotation that the joint path, one straight segment, brings about."""
+        return Reaction(self.problem.robot, self.joint_values[[0, -1]])
 
     def configurations(self) -> Array:
         """(m + 1, nq) configurations at the corners."""
@@ -56,12 +53,13 @@ class Motion:
         t = time[:, None]
         position = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
         joints = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
-        if self._reacts:
-            turned = self.reaction.rotation(edge, time)
-            quat = attitude.multiply(self.attitudes[edge], turned)
-        else:
-            quat = self._held((edge + time) / self.problem.lattice.divisions)
+        quat = self._attitudes((edge + time) / self.problem.lattice.divisions)
         return self.problem.robot.assemble(position, quat, joints)
 
-    def _held(self, progress: Array) -> Array:
-        return attitude.slerp(self.problem.start[3:7], self.problem.goal[3:7], progress)
+    def _attitudes(self, progress: Array) -> Array:
+        """(N, 4) at path parameters (N,): nodes differ in translation only, which turns nothing."""
+        start, goal = self.problem.start[3:7], self.problem.goal[3:7]
+        if not self._reacts:
+            return attitude.slerp(start, goal, progress)
+        turned = self.reaction.rotation(np.zeros(len(progress), dtype=np.int64), progress)
+        return attitude.multiply(start, turned)

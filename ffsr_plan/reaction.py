@@ -47,7 +47,7 @@ class Reaction:
         """
         steps = np.diff(joint_values, axis=0)
         largest = float(np.max(np.abs(steps), initial=0.0))
-        substeps = max(1, int(np.ceil(largest / 0.3)))
+        substeps = max(1, int(np.ceil(largest / 0.2)))
         while True:
             self._expand(robot, joint_values[:-1], steps, substeps)
             if self._converged():

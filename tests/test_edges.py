@@ -47,11 +47,11 @@ def test_an_edge_is_refused_only_where_it_comes_nearer_than_the_tolerance(spare)
     assert verdict.free or verdict.least_clearance <= 1e-4
 
 
-@given(st.floats(0.01, 3.0), st.floats(1e-4, 0.1))
+@given(st.floats(1e-6, 3.0), st.floats(1e-4, 0.1))
 def test_the_clearance_bound_is_below_the_least_clearance_and_near_it(spare, gap):
     _, clearance = along_a_line(1.0 + spare)
     bound = clearance_bound(clearance, (clearance(0.0), clearance(1.0)), 4.0, gap)
-    assert spare - gap - 1e-9 <= bound <= spare
+    assert max(spare - gap - 1e-8, 0.8 * spare) <= bound <= spare
 
 
 def small_problem(seed, mode="free-flying"):
