@@ -17,10 +17,23 @@ IDENTITY.setflags(write=False)
 
 def multiply(p: Array, q: Array) -> Array:
     """Composition p q: first q, then p, as for rotation matrices."""
-    pv, pw, qv, qw = p[..., :3], p[..., 3:], q[..., :3], q[..., 3:]
-    vector = pw * qv + qw * pv + np.cross(pv, qv)
-    scalar = pw * qw - np.sum(pv * qv, axis=-1, keepdims=True)
-    return np.concatenate([vector, scalar], axis=-1)
+    px, py, pz, pw = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
+    qx, qy, qz, qw = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    product = np.empty(np.broadcast_shapes(p.shape, q.shape))
+    product[..., 0] = pw * qx + px * qw + py * qz - pz * qy
+    product[..., 1] = pw * qy - px * qz + py * qw + pz * qx
+    product[..., 2] = pw * qz + px * qy - py * qx + pz * qw
+    product[..., 3] = pw * qw - px * qx - py * qy - pz * qz
+    return product
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Vector product along the last axis; `np.cross` takes far longer over small arrays."""
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    product[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    product[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    product[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return product
 
 
 def inverse(q: Array) -> Array:

@@ -206,7 +206,7 @@ def _plan_table(title: str, found: Plan, report: Report | None) -> Table:
     )
     table.add_row(
         "certified",
-        f"{proof.edges_free} edges free, {proof.edges_blocked} refused, "
+        f"{proof.edges_free} edges free, {proof.edges_refused} refused, "
         f"{proof.node_queries} + {proof.edge_queries} distance queries (nodes + edges)",
     )
     cycles = len(found.history.best)

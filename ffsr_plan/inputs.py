@@ -13,6 +13,8 @@ from ffsr_plan.errors import InvalidInput, unknown_name
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+States = NDArray[np.int8]
 
 
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])

@@ -114,6 +114,8 @@ class Reaction:
         a1 = middle
         a2 = np.sqrt(15.0) / 3.0 * (last - first)
         a3 = 10.0 / 3.0 * (last - 2.0 * middle + first)
-        c1 = np.cross(a1, a2)
-        c2 = -np.cross(a1, 2.0 * a3 + c1) / 60.0
-        return attitude.exp(-(a1 + a3 / 12.0 + np.cross(-20.0 * a1 - a3 + c1, a2 + c2) / 240.0))
+        c1 = attitude.cross(a1, a2)
+        c2 = -attitude.cross(a1, 2.0 * a3 + c1) / 60.0
+        return attitude.exp(
+            -(a1 + a3 / 12.0 + attitude.cross(-20.0 * a1 - a3 + c1, a2 + c2) / 240.0)
+        )

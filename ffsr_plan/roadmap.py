@@ -2,37 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ffsr_plan.collision import Nearest, obstacle_query, self_query
-from ffsr_plan.edges import Verdict, certify, clearance_bound
-from ffsr_plan.errors import GoalInCollision, NoPath, StartInCollision
-from ffsr_plan.inputs import Array, IntArray, frozen
+from ffsr_plan.edges import ROUNDING, Verdict
+from ffsr_plan.errors import NoPath
+from ffsr_plan.inputs import Array, Flags, IntArray, States, frozen
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.objective import nearness, objective, path_length
 from ffsr_plan.problem import Problem
-from ffsr_plan.travel import swing
+from ffsr_plan.prover import Prover
 
-_BOUND_GAP = 1e-3  # [m] between the clearance proven along a path and the least one met
+UNKNOWN, FREE, REFUSED = 0, 1, -1
 
 
 class Certificate(NamedTuple):
     """What was proven, and at what cost."""
 
     edges_free: int
-    """Edges proven free."""
-    edges_blocked: int
-    """Edges refused."""
+    """Edges that were asked for and proven free."""
+    edges_refused: int
+    """Edges that were asked for and refused."""
     node_queries: int
     """Coal queries for the clearances of nodes: one a configuration, over all pairs."""
     edge_queries: int
-    """Coal queries inside edges, obstacles and self-collision together."""
+    """Coal queries for all proofs, obstacles and self-collision together."""
     least_clearance: float
     """Proven lower bound on the clearance all along the returned path [m]."""
 
@@ -42,8 +38,10 @@ class Roadmap:
 
     Attributes:
         lattice: the lattice.
+        prover: clearances and proofs for any offsets.
         clearances: (m + 1, n) clearance of each node [m]; NaN where a layer lacks the node.
         admissible: (m + 1, n) the nodes that touch nothing.
+        status: (m, n, n) what is known of each edge: UNKNOWN, FREE or REFUSED.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -55,38 +53,53 @@ class Roadmap:
         """
         self.problem = problem
         self.lattice = LayeredLattice(problem)
-        self._obstacles = obstacle_query(problem.robot, problem.scene)
-        self._self = self_query(problem.robot)
-        m, n = self.lattice.divisions, self.lattice.size
-        self._check_ends()
+        self.prover = Prover(self.lattice.nominal)
+        self.prover.check_ends()
+        self.prover.check_self_collision()
+        before = self.prover.queries
+        m, n, origin = self.lattice.divisions, self.lattice.size, self.lattice.origin
         clearances = np.full((m + 1, n), np.nan)
-        for i in (0, m):
-            end = self.lattice.layer(i)[self.lattice.origin]
-            clearances[i, self.lattice.origin] = self._obstacles.distance(end)
-        for i in range(1, m):
-            clearances[i] = self._obstacles.distances(self.lattice.layer(i))
+        for i in range(m + 1):
+            nodes = slice(origin, origin + 1) if i in (0, m) else slice(None)
+            clearances[i, nodes] = self.prover.clearances(i, self.lattice.offsets[nodes])
+        self._node_queries = self.prover.queries - before
         self.clearances = frozen(clearances)
-        self.admissible: NDArray[np.bool_] = clearances > 0.0
+        self.admissible: Flags = clearances > 0.0
         self.admissible.setflags(write=False)
-        self._node_queries = self._obstacles.count
-        begin = np.abs(self.lattice.nominal.joint_values[0])
-        end = np.abs(self.lattice.nominal.joint_values[-1])
-        self._swing = swing(
-            problem.robot,
-            problem.joint_travel / m,
-            np.maximum(begin, end),
-            None if problem.mode == "free-flying" else problem.turn / m,
-        )
+        self.status: States = np.zeros((m, n, n), dtype=np.int8)
         self._verdicts: dict[tuple[int, int, int], Verdict] = {}
-        self._nominal: dict[tuple[int, float], Array] = {}
-        self._certify_self_collision()
 
     def certify(self, layer: int, tail: int, head: int) -> Verdict:
         """The verdict on the edge from node `tail` of `layer` to node `head` of the next one."""
         key = (layer, tail, head)
         if key not in self._verdicts:
-            self._verdicts[key] = self._examine(layer, tail, head)
+            ends = (float(self.clearances[layer, tail]), float(self.clearances[layer + 1, head]))
+            offsets = self.lattice.offsets
+            verdict = self.prover.certify(layer, offsets[tail], offsets[head], ends)
+            self._verdicts[key] = verdict
+            self.status[key] = FREE if verdict.free else REFUSED
+            if verdict.least_clearance < 0.0:
+                self._rule_out(layer, tail, head, verdict)
         return self._verdicts[key]
+
+    def free(self, layer: int, tail: int, head: int) -> bool:
+        """Whether an edge is free, certifying it if that is not known yet."""
+        known = self.status[layer, tail, head]
+        return bool(known == FREE or (known == UNKNOWN and self.certify(layer, tail, head).free))
+
+    def prove_path(self, path: IntArray) -> bool:
+        """Certify every edge of a path (m + 1,) whose state is unknown; whether all are free."""
+        edges = [(i, int(j), int(k)) for i, (j, k) in enumerate(pairwise(path))]
+        verdicts = [self.free(*edge) for edge in edges]  # not only up to the first refusal
+        return all(verdicts)
+
+    def prove_obvious(self) -> None:
+        """Mark the edges that the clearances at their ends prove free without a query."""
+        travel = self.lattice.base_travel + (self.prover.swing + ROUNDING)
+        for i in range(self.lattice.divisions):
+            tails = np.where(self.admissible[i], self.clearances[i], -np.inf)
+            heads = np.where(self.admissible[i + 1], self.clearances[i + 1], -np.inf)
+            self.status[i][tails[:, None] + heads > travel] = FREE
 
     def path_length(self, path: IntArray) -> float:
         """L of Eq. 6 [m] of a path, node indices (m + 1,)."""
@@ -100,94 +113,75 @@ class Roadmap:
         """F of Eq. 8 of a path, node indices (m + 1,), edges taken as free."""
         return objective(self.problem, self.path_length(path), self.path_clearances(path))
 
-    def nearness(self) -> Array:
-        """(m + 1, n) delta / d_imin of the nodes; layers 0 and m do not count in F."""
-        return nearness(self.problem, self.clearances)
+    def edge_costs(self) -> Array:
+        """(n, n) share of an edge in F: its length in length units."""
+        return self.lattice.steps / self.problem.length_unit
+
+    def node_costs(self) -> Array:
+        """(m + 1, n) share of a node in F: delta / d_imin; infinite where it may not be entered."""
+        costs = np.where(self.admissible, nearness(self.problem, self.clearances), np.inf)
+        costs[[0, -1], self.lattice.origin] = 0.0  # layers 0 and m do not count in Eq. 8
+        return frozen(costs)
 
     def certificate(self, path: IntArray) -> Certificate:
-        """Sum up the proofs, after certifying every edge of `path`."""
-        edges = [(i, int(j), int(k)) for i, (j, k) in enumerate(pairwise(path))]
-        free = all(self.certify(*edge).free for edge in edges)
-        bounds = (
-            [clearance_bound(*self._question(*edge), _BOUND_GAP) for edge in edges] if free else []
-        )
-        proven = sum(v.free for v in self._verdicts.values())
+        """Sum up the proofs along a path all of whose edges are free."""
+        offsets, clearances = self.lattice.offsets[path], self.path_clearances(path)
+        bounds = [
+            self.prover.bound(i, offsets[i], offsets[i + 1], (float(a), float(b)))
+            for i, (a, b) in enumerate(pairwise(clearances))
+        ]
+        return self.proofs()._replace(least_clearance=min(bounds))
+
+    def proofs(self) -> Certificate:
+        """What has been proven so far; no clearance of any path yet."""
+        free = sum(v.free for v in self._verdicts.values())
         return Certificate(
-            edges_free=proven,
-            edges_blocked=len(self._verdicts) - proven,
+            edges_free=free,
+            edges_refused=len(self._verdicts) - free,
             node_queries=self._node_queries,
-            edge_queries=self._obstacles.count - self._node_queries + self._self.count,
-            least_clearance=min(bounds, default=0.0),
+            edge_queries=self.prover.queries - self._node_queries,
+            least_clearance=0.0,
         )
 
-    def no_path(self, layer: int) -> NoPath:
-        """The error that says that no node of `layer` can be reached, and what is in the way."""
-        closing: set[int | str] = set()
+    def no_path(self) -> NoPath | None:
+        """Search the lattice from the start, certifying as needed; the error if it has no path."""
+        m, n, origin = self.lattice.divisions, self.lattice.size, self.lattice.origin
+        reached = [origin]
+        for layer in range(m):
+            heads = [origin] if layer == m - 1 else [
+                k for k in range(n) if self.admissible[layer + 1, k]
+            ]  # fmt: skip
+            onwards = [k for k in heads if any(self.free(layer, j, k) for j in reached)]
+            if not onwards:
+                return NoPath(layer + 1, self._closing(layer, reached), m)
+            reached = onwards
+        return None
+
+    def _closing(self, layer: int, reached: list[int]) -> tuple[int | str, ...]:
+        """What closes all edges from the nodes `reached` of a layer to the next one."""
+        offsets, found = self.lattice.offsets, set[int | str]()
         for (i, tail, head), verdict in self._verdicts.items():
-            if i == layer - 1 and not verdict.free:
-                q = self._on_edge(i, tail, head, verdict.time)
-                closing.add(self._obstacles.nearest(q).other)
-        if layer < self.lattice.divisions:
-            for node in np.flatnonzero(~self.admissible[layer]):
-                closing.add(self._obstacles.nearest(self.lattice.layer(layer)[node]).other)
-        order = sorted(closing, key=lambda name: (isinstance(name, str), name))
-        return NoPath(layer, tuple(order), self.lattice.divisions)
+            if i == layer and not verdict.free:
+                found.add(
+                    self.prover.nearest_obstacle(i, offsets[tail], offsets[head], verdict.time)
+                )
+        for node in np.flatnonzero(~self.admissible[layer + 1]):
+            if layer + 1 < self.lattice.divisions:
+                at = offsets[node]
+                found.add(self.prover.nearest_obstacle(layer + 1, at, at, 0.0))
+        return tuple(sorted(found, key=lambda name: (isinstance(name, str), name)))
 
-    def _examine(self, layer: int, tail: int, head: int) -> Verdict:
-        return certify(*self._question(layer, tail, head), self.problem.tolerance)
+    def _rule_out(self, layer: int, tail: int, head: int, verdict: Verdict) -> None:
+        """Refuse every edge that passes, at the same time, within the depth just met.
 
-    def _question(
-        self, layer: int, tail: int, head: int
-    ) -> tuple[Callable[[float], float], tuple[float, float], float]:
-        """What a proof about an edge needs: clearance along it, at its ends, and the travel."""
-        speed = float(self.lattice.base_travel[tail, head] + np.max(self._swing.world, initial=0.0))
-        ends = (float(self.clearances[layer, tail]), float(self.clearances[layer + 1, head]))
+        Attitude and joints are the same there, and a translation shorter than the penetration depth
+        does not lead out of the obstacle.
+        """
+        offsets, t = self.lattice.offsets, verdict.time
+        met = (1.0 - t) * offsets[tail] + t * offsets[head]
+        there = (1.0 - t) * offsets[:, None] + t * offsets[None]
+        apart = np.linalg.norm(there - met, axis=2)
+        self.status[layer][apart < -verdict.least_clearance * (1.0 - 1e-9)] = REFUSED
 
-        def clearance_at(time: float) -> float:
-            return self._obstacles.distance(self._on_edge(layer, tail, head, time))
 
-        return clearance_at, ends, speed
-
-    def _on_edge(self, layer: int, tail: int, head: int, time: float) -> Array:
-        q = self._nominal_at(layer, time).copy()
-        offsets = self.lattice.offsets
-        q[:3] += (1.0 - time) * offsets[tail] + time * offsets[head]
-        return q
-
-    def _nominal_at(self, layer: int, time: float) -> Array:
-        """Halving asks for the same few times on every edge of a layer, so they are kept."""
-        key = (layer, time)
-        if key not in self._nominal:
-            at = self.lattice.nominal.at(np.array([layer]), np.array([time]))
-            self._nominal[key] = frozen(at[0])
-        return self._nominal[key]
-
-    def _check_ends(self) -> None:
-        nominal = self.lattice.nominal.configurations()
-        for q, error in ((nominal[0], StartInCollision), (nominal[-1], GoalInCollision)):
-            for query in (self._obstacles, self._self):
-                near: Nearest = query.nearest(q)
-                if near.distance <= 0.0:
-                    raise error(near.link, near.other, -near.distance)
-
-    def _certify_self_collision(self) -> None:
-        """One verdict an edge of the joint path serves all nodes: it does not see the base."""
-        if self._self.empty:
-            return
-        m = self.lattice.divisions
-        corners = self.lattice.nominal.configurations()
-        pairs = self.problem.robot.collision_model.collisionPairs
-        in_base = self._swing.in_base
-        speed = max(float(in_base[p.first] + in_base[p.second]) for p in pairs)
-        ends = self._self.distances(corners)
-        for i in range(m):
-            between = partial(self._self_distance, i)
-            verdict = certify(
-                between, (float(ends[i]), float(ends[i + 1])), speed, self.problem.tolerance
-            )
-            if not verdict.free:
-                near = self._self.nearest(self._nominal_at(i, verdict.time))
-                raise NoPath(i + 1, (near.link, near.other), m)
-
-    def _self_distance(self, layer: int, time: float) -> float:
-        return self._self.distance(self._nominal_at(layer, time))
+__all__ = ["FREE", "REFUSED", "UNKNOWN", "Certificate", "Roadmap"]

@@ -6,7 +6,7 @@ import numpy as np
 def optimum(roadmap):
     """Least F and its path over fully certified edges; (inf, None) if there is no path."""
     m, n, origin = roadmap.lattice.divisions, roadmap.lattice.size, roadmap.lattice.origin
-    unit, near = roadmap.problem.length_unit, roadmap.nearness()
+    unit, near = roadmap.problem.length_unit, roadmap.node_costs()
     cost, paths = {origin: 0.0}, {origin: [origin]}
     for i in range(m):
         reached, ways = {}, {}

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ffsr_plan as fp
-from ffsr_plan.colony.ant_system import _Walk
+from ffsr_plan.colony.ant_system import Walk
 from ffsr_plan.roadmap import Roadmap
 
 
@@ -24,7 +24,7 @@ def test_equation_11_the_wheel_is_spun_in_proportion_to_pheromone_and_visibility
     problem = small(point, 0, obstacles=0)
     roadmap, rng = Roadmap(problem), np.random.default_rng(5)
     alpha, beta = 1.3, 2.0
-    walk = _Walk(fp.AntSystem(ants=40_000, alpha=alpha, beta=beta), roadmap, rng)
+    walk = Walk(fp.AntSystem(ants=40_000, alpha=alpha, beta=beta), roadmap, rng)
     tau = rng.uniform(0.5, 3.0, (6, 5, 5))
     paths = walk.tours(tau)
     for layer, tail in ((0, 2), (2, 1), (4, 3)):
@@ -45,7 +45,7 @@ def test_a_refused_edge_leaves_the_others_in_proportion(point):
     roadmap = Roadmap(problem)
     free = np.array([roadmap.certify(1, 2, head).free for head in range(5)])
     assert 0 < free.sum() < 5
-    walk = _Walk(fp.AntSystem(ants=20_000, beta=1.0), Roadmap(problem), np.random.default_rng(0))
+    walk = Walk(fp.AntSystem(ants=20_000, beta=1.0), Roadmap(problem), np.random.default_rng(0))
     paths = walk.tours(np.ones((6, 5, 5)))
     counts = np.bincount(paths[paths[:, 1] == 2, 2], minlength=5)
     weight = free / np.hypot(1.0, 0.6 * (np.arange(5) - 2))
@@ -61,7 +61,7 @@ def test_equations_12_and_13_pheromone_persists_by_rho_and_grows_by_q_over_f(poi
     fp.plan(problem, planner, 3, on_cycle=lambda c: seen.append((c.counts, c.pheromone.copy())))
     # the same again by hand: the same generator draws the same tours
     roadmap, rng = Roadmap(problem), np.random.default_rng(3)
-    walk, tau = _Walk(planner, roadmap, rng), np.full((6, 5, 5), 2.0)
+    walk, tau = Walk(planner, roadmap, rng), np.full((6, 5, 5), 2.0)
     for counts, pheromone in seen:
         paths = walk.tours(tau)
         expected = np.zeros_like(tau)

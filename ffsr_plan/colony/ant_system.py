@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ffsr_plan import paper
 from ffsr_plan.colony.records import Cycle, History, OnCycle, Search, Trails
+from ffsr_plan.colony.walk import walk
+from ffsr_plan.colony.ways import close_refused, open_ways
+from ffsr_plan.errors import PlanningError
 from ffsr_plan.inputs import Array, IntArray, frozen, number, whole_number
 from ffsr_plan.roadmap import Roadmap
 
@@ -68,118 +70,77 @@ class AntSystem:
             NoPath: proven, when every way on from the start has been refused.
         """
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
-        layers = np.arange(m)
-        walk = _Walk(self, roadmap, rng)
+        roadmap.prove_obvious()
+        walk = Walk(self, roadmap, rng)
         tau = np.full((m, n, n), self.C)
         walked, laid = np.zeros((m, n, n), dtype=np.int64), np.zeros((m, n, n))
+        edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
+        along = np.broadcast_to(np.arange(m + 1), (self.ants, m + 1))
         records: list[tuple[float, float, float, int]] = []
         best, best_path = np.inf, np.zeros(m + 1, dtype=np.int64)
         for cycle in range(1, self.cycles + 1):
             paths = walk.tours(tau)
-            costs = np.array([roadmap.objective(path) for path in paths])
+            costs = edge_costs[paths[:, :-1], paths[:, 1:]].sum(axis=1)
+            costs += node_costs[along, paths].sum(axis=1)
             leader = int(np.argmin(costs))
             if costs[leader] < best:
-                best, best_path = float(costs[leader]), paths[leader]
-            edges = (np.broadcast_to(layers, (self.ants, m)), paths[:, :-1], paths[:, 1:])
-            tau *= self.rho
+                best, best_path = float(costs[leader]), paths[leader].copy()
+            edges = (along[:, :-1], paths[:, :-1], paths[:, 1:])
             deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
+            tau *= self.rho
             np.add.at(tau, edges, deposit)
-            np.add.at(laid, edges, deposit)
             np.maximum(tau, _FAINT, out=tau)
+            np.add.at(laid, edges, deposit)
             np.add.at(walked, edges, 1)
             distinct = len(np.unique(paths, axis=0))
             records.append((best, float(costs[leader]), float(np.mean(costs)), distinct))
             if on_cycle is not None:
                 counts = np.zeros((m + 1, n), dtype=np.int64)
-                np.add.at(counts, (np.broadcast_to(np.arange(m + 1), paths.shape), paths), 1)
+                np.add.at(counts, (along, paths), 1)
                 on_cycle(Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau))
             if distinct == 1:
                 break
         return Search(frozen(best_path), _history(records), _trails(walked, laid, tau))
 
 
-class _Walk:
-    """Ants walking from start to goal, all of a cycle side by side, layer by layer.
+class Walk:
+    """Ants walking from start to goal by Eq. 11.
 
-    Edges are certified when an ant first chooses them. One that is refused is barred and the ant
-    draws again, which gives exactly the roulette wheel over the allowed edges. A node with no way
-    on is barred in turn, and the ant starts anew; if that happens to the start, no path exists.
+    Edges are certified when an ant first chooses them. One that is refused is closed and the ant
+    draws again, which gives exactly the roulette wheel over the allowed edges. Nodes from which the
+    goal is known to be out of reach are not allowed.
     """
 
     def __init__(self, settings: AntSystem, roadmap: Roadmap, rng: np.random.Generator) -> None:
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
-        self._ants, self._alpha = settings.ants, settings.alpha
-        self._roadmap, self._rng = roadmap, rng
-        self._visibility = -settings.beta * np.log(_positive(roadmap.lattice.steps))  # log eta^beta
-        self._open = roadmap.admissible[:-1, :, None] & roadmap.admissible[1:, None, :]
-        self._proven = np.zeros((m, n, n), dtype=bool)
-        self._furthest = 0
+        self._roadmap, self._rng, self._alpha = roadmap, rng, settings.alpha
+        steps = np.maximum(roadmap.lattice.steps, 1e-12)  # a step of no length at all stays visible
+        self._log_visibility = -settings.beta * np.log(steps)
+        self._ways, self._exits = open_ways(roadmap.admissible, roadmap.status)
+        self._wheels = np.empty((m, n, n))
+        self._changed = np.ones((m, n), dtype=bool)
+        self._paths = np.full((settings.ants, m + 1), roadmap.lattice.origin, dtype=np.int64)
 
     def tours(self, tau: Array) -> IntArray:
-        """(ants, m + 1) free paths drawn by Eq. 11."""
-        m, origin = self._roadmap.lattice.divisions, self._roadmap.lattice.origin
-        paths = np.full((self._ants, m + 1), origin, dtype=np.int64)
-        waiting = np.arange(self._ants)
-        while len(waiting):
-            lost: list[int] = []
-            walking = waiting
-            for layer in range(m):
-                heads = self._step(layer, paths[walking, layer], tau[layer])
-                stuck = heads < 0
-                lost.extend(walking[stuck])
-                walking = walking[~stuck]
-                paths[walking, layer + 1] = heads[~stuck]
-            waiting = np.array(lost, dtype=np.int64)
-        return paths
+        """(ants, m + 1) free paths drawn by Eq. 11; valid until the next call.
 
-    def _step(self, layer: int, tails: IntArray, tau: Array) -> IntArray:
-        """The next node of each ant on `tails`, or -1 for ants at a dead end."""
-        heads = np.full(len(tails), -1, dtype=np.int64)
-        drawing = np.arange(len(tails))
-        while len(drawing):
-            at = tails[drawing]
-            allowed = self._open[layer, at]
-            alive = allowed.any(axis=1)
-            for node in np.unique(at[~alive]):
-                self._bar(layer, int(node))
-            drawing, at, allowed = drawing[alive], at[alive], allowed[alive]
-            if not len(drawing):
-                break
-            heads[drawing] = self._draw(at, allowed, tau)
-            refused = [not self._free(layer, at[k], heads[a]) for k, a in enumerate(drawing)]
-            drawing = drawing[refused]
-            heads[drawing] = -1
-        if (heads >= 0).any():
-            self._furthest = max(self._furthest, layer + 1)
-        return heads
-
-    def _draw(self, tails: IntArray, allowed: NDArray[np.bool_], tau: Array) -> IntArray:
-        """Roulette wheel of Eq. 11. Weights are scaled by the row's largest: ratios are all."""
-        log_weight = self._alpha * np.log(tau[tails]) + self._visibility[tails]
-        log_weight[~allowed] = -np.inf
-        weight = np.exp(log_weight - log_weight.max(axis=1, keepdims=True))
-        wheel = np.cumsum(weight, axis=1)
-        spin = self._rng.random(len(tails)) * wheel[:, -1]
-        return np.asarray(np.argmax(wheel > spin[:, None], axis=1))
-
-    def _free(self, layer: int, tail: int, head: int) -> bool:
-        if not self._proven[layer, tail, head]:
-            if not self._roadmap.certify(layer, int(tail), int(head)).free:
-                self._open[layer, tail, head] = False
-                return False
-            self._proven[layer, tail, head] = True
-        return True
-
-    def _bar(self, layer: int, node: int) -> None:
-        """No way leads on from this node: no ant may step onto it again."""
-        if layer == 0:
-            raise self._roadmap.no_path(self._furthest + 1)
-        self._open[layer - 1, :, node] = False
-
-
-def _positive(steps: Array) -> Array:
-    """d_pq, zero (a start and goal that coincide in all that counts) replaced by a tiny length."""
-    return np.maximum(steps, 1e-12)
+        Raises:
+            NoPath: the start has become a dead end.
+        """
+        roadmap, paths = self._roadmap, self._paths
+        self._changed[:] = True
+        ant, layer = 0, -1
+        while True:
+            ant, layer = walk(
+                self._rng, tau, self._alpha, self._log_visibility, self._ways, self._exits,
+                roadmap.status, self._wheels, self._changed, paths, ant, layer,
+            )  # fmt: skip
+            if ant == len(paths):
+                return paths
+            if ant < 0:
+                raise roadmap.no_path() or PlanningError("the ants are lost")
+            if not roadmap.free(layer, int(paths[ant, layer]), int(paths[ant, layer + 1])):
+                close_refused(layer, roadmap.status, self._ways, self._exits, self._changed)
 
 
 def _history(records: list[tuple[float, float, float, int]]) -> History:
