@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from ffsr_plan import momentum
 from ffsr_plan.axes import Axis, Lattice
 from ffsr_plan.collision import clearance
-from ffsr_plan.colony import AntSystem
+from ffsr_plan.colony import AntSystem, MaxMinAntSystem
 from ffsr_plan.errors import (
     FfsrPlanError,
     GoalInCollision,
@@ -24,8 +24,10 @@ from ffsr_plan.errors import (
     StartInCollision,
 )
 from ffsr_plan.lattice import LayeredLattice
+from ffsr_plan.optimum import LatticeOptimum
 from ffsr_plan.planner import plan
 from ffsr_plan.problem import Problem
+from ffsr_plan.refinement import refine
 from ffsr_plan.result import Plan
 from ffsr_plan.roadmap import Roadmap
 from ffsr_plan.robot import SpaceRobot, load_robot, robot_names
@@ -42,7 +44,9 @@ __all__ = [
     "GoalInCollision",
     "InvalidInput",
     "Lattice",
+    "LatticeOptimum",
     "LayeredLattice",
+    "MaxMinAntSystem",
     "NoPath",
     "Plan",
     "PlanningError",
@@ -58,6 +62,7 @@ __all__ = [
     "momentum",
     "plan",
     "read_scenario",
+    "refine",
     "robot_names",
 ]
 

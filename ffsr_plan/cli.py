@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, NamedTuple, TypeVar
 
 import typer
 from rich.console import Console
@@ -43,10 +43,11 @@ Force = Annotated[bool, typer.Option("--force", help="Replace results that are t
 
 @app.command()
 def demo(out: Out = None, force: Force = False) -> None:
-    """Plan, verify and show the paper's experiment (the bundled scenario fig2a)."""
+    """Plan, verify and show the scene of the paper's Fig. 2(a) with the default planner."""
     with _errors_on_stderr():
         target = _prepared(out, force) if out is not None else _unused(Path("ffsr-demo"))
-        _plan_and_report("fig2a", None, None, target, check=True)
+        options = Options(planner="max-min-ant-system", refine=True)
+        _plan_and_report("fig2a", options, target, check=True)
 
 
 @app.command()
@@ -56,6 +57,15 @@ def plan(
         str | None, typer.Option(help="Use this planner, at its defaults, not the scenario's.")
     ] = None,
     seed: Annotated[int | None, typer.Option(help="Seed, instead of the scenario's.")] = None,
+    refine: Annotated[
+        bool | None,
+        typer.Option("--refine/--no-refine", help="Move the path off the lattice in the end."),
+    ] = None,
+    colonies: Annotated[int, typer.Option(help="Independent colonies; the best counts.")] = 1,
+    workers: Annotated[int, typer.Option(help="Processes for them.")] = 1,
+    time_limit: Annotated[
+        float | None, typer.Option(help="Stop searching after so many seconds.")
+    ] = None,
     out: Out = None,
     force: Force = False,
     check: Annotated[
@@ -65,7 +75,8 @@ def plan(
     """Plan a scenario, verify the plan, and write it where --out says."""
     with _errors_on_stderr():
         target = _prepared(out, force) if out is not None else None
-        _plan_and_report(scenario, planner, seed, target, check)
+        options = Options(planner, seed, refine, colonies, workers, time_limit)
+        _plan_and_report(scenario, options, target, check)
 
 
 @app.command()
@@ -102,20 +113,31 @@ def main() -> None:
     app()
 
 
-def _plan_and_report(
-    source: str, planner_name: str | None, seed: int | None, target: Path | None, check: bool
-) -> None:
+class Options(NamedTuple):
+    """What the command line may say otherwise than the scenario."""
+
+    planner: str | None = None
+    seed: int | None = None
+    refine: bool | None = None
+    colonies: int = 1
+    workers: int = 1
+    time_limit: float | None = None
+
+
+def _plan_and_report(source: str, options: Options, target: Path | None, check: bool) -> None:
     from ffsr_plan.inputs import one_of, whole_number
     from ffsr_plan.planner import PLANNERS
     from ffsr_plan.scenario import read_scenario
 
     scenario = read_scenario(source)
-    if planner_name is not None:
-        settings = PLANNERS[one_of("--planner", planner_name, list(PLANNERS))]()
+    if options.planner is not None:
+        settings = PLANNERS[one_of("--planner", options.planner, list(PLANNERS))]()
         scenario = scenario._replace(planner=settings)
-    if seed is not None:
-        scenario = scenario._replace(seed=whole_number("--seed", seed, at_least=0))
-    found = _planned(scenario)
+    if options.seed is not None:
+        scenario = scenario._replace(seed=whole_number("--seed", options.seed, at_least=0))
+    if options.refine is not None:
+        scenario = scenario._replace(refine=options.refine)
+    found = _planned(scenario, options)
     if target is not None:
         _write_results(found, scenario.title, target)
     report = _with_spinner("verifying", found.verify) if check else None
@@ -126,7 +148,7 @@ def _plan_and_report(
         raise PlanningError("the plan does not verify: " + "; ".join(report.problems))
 
 
-def _planned(scenario: Scenario) -> Plan:
+def _planned(scenario: Scenario, options: Options) -> Plan:
     """Plan with a progress bar on a terminal, once it has taken a second."""
     from rich.progress import Progress
 
@@ -137,7 +159,7 @@ def _planned(scenario: Scenario) -> Plan:
         task = progress.add_task("ants", visible=False)
 
         def show(cycle: Cycle) -> None:
-            if err_console.is_terminal and time.monotonic() - begin > 1.0:
+            if time.monotonic() - begin > 1.0:
                 progress.update(
                     task,
                     visible=True,
@@ -147,7 +169,16 @@ def _planned(scenario: Scenario) -> Plan:
                 )
                 progress.refresh()
 
-        return make_plan(scenario.problem, scenario.planner, scenario.seed, on_cycle=show)
+        return make_plan(
+            scenario.problem,
+            scenario.planner,
+            scenario.seed,
+            refine=scenario.refine,
+            colonies=options.colonies,
+            workers=options.workers,
+            time_limit=options.time_limit,
+            on_cycle=show if err_console.is_terminal and options.colonies == 1 else None,
+        )
 
 
 def _with_spinner(label: str, work: Callable[[], T]) -> T:
@@ -197,6 +228,10 @@ def _plan_table(title: str, found: Plan, report: Report | None) -> Table:
     table.add_row("length L", f"{found.length:.4f} m")
     table.add_row("objective F", f"{found.objective:.4f}")
     table.add_row(
+        "on the lattice",
+        f"F {found.lattice_objective:.4f}, optimum {found.optimum:.4f}, gap {found.gap:.3%}",
+    )
+    table.add_row(
         "clearance at nodes", f"least {clearances.min():.4f} m, mean {clearances.mean():.4f} m"
     )
     table.add_row("proven along the motion", f"at least {proof.least_clearance:.6f} m")
@@ -210,7 +245,8 @@ def _plan_table(title: str, found: Plan, report: Report | None) -> Table:
         f"{proof.node_queries} + {proof.edge_queries} distance queries (nodes + edges)",
     )
     cycles = len(found.history.best)
-    table.add_row("planner", f"{found.planner.name}, seed {found.seed}, {cycles} cycles")
+    early = ", interrupted: the best so far" if found.interrupted else ""
+    table.add_row("planner", f"{found.planner.name}, seed {found.seed}, {cycles} cycles{early}")
     table.add_row("time", f"{found.seconds:.2f} s")
     if report is not None:
         for name, value in _report_rows(report):

@@ -66,19 +66,27 @@ def certify(
 
 
 def clearance_bound(
-    clearance_at: Callable[[float], float], ends: tuple[float, float], speed: float, gap: float
-) -> float:
-    """A proven lower bound on the clearance along an edge, near the least clearance.
+    clearance_at: Callable[[float], float],
+    ends: tuple[float, float],
+    speed: float,
+    met: float,
+    slack: float,
+) -> tuple[float, float]:
+    """A proven lower bound on the clearance along an edge of a path, near the path's least.
 
-    The interval whose bound is lowest is halved until that bound is close to a clearance that was
-    really met: within `gap`, and within a tenth of it, so that an edge that keeps clear gets a
-    bound greater than zero.
+    The interval whose bound is lowest is halved until that bound is close to the least clearance
+    met on the path: within the share `slack` of it, so that a path that keeps clear gets a bound
+    greater than zero. An edge that is clear by more than that is left at once.
 
     Args:
         clearance_at: clearance [m] at a time in (0, 1).
         ends: clearances at times 0 and 1.
         speed: bound on the distance that any point travels over the edge [m].
-        gap: [m], greater than zero.
+        met: the least clearance met on the path so far.
+        slack: between 0 and 1.
+
+    Returns:
+        The bound, and the least clearance met by now.
     """
 
     def interval(
@@ -87,13 +95,13 @@ def clearance_bound(
         bound = 0.5 * (first + last - (end - begin) * speed - ROUNDING)
         return (bound, begin, end, first, last)
 
-    met = min(ends)
+    met = min(met, *ends)
     heap = [interval(0.0, 1.0, *ends)]
-    while met - heap[0][0] > max(min(gap, 0.1 * met), ROUNDING):
+    while met - heap[0][0] > max(slack * met, ROUNDING):
         _, begin, end, first, last = heapq.heappop(heap)
         middle = 0.5 * (begin + end)
         clearance = clearance_at(middle)
         met = min(met, clearance)
         heapq.heappush(heap, interval(begin, middle, first, clearance))
         heapq.heappush(heap, interval(middle, end, clearance, last))
-    return heap[0][0]
+    return min(heap[0][0], met), met

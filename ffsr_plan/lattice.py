@@ -38,6 +38,7 @@ class LayeredLattice:
         indices: (n, axes) offset index of each node along each axis, 0 = no offset.
         offsets: (n, 3) displacement of the base from the nominal position, world axes [m].
         origin: index j of the node without offset.
+        directions: (axes, 3) unit vectors of the axes, world axes.
         nominal: the motion through the nodes without offset.
     """
 
@@ -56,10 +57,12 @@ class LayeredLattice:
         self.origin = len(self.indices) // 2
         if axes:
             columns = {"lateral": 0, "normal": 1}
-            directions = path_frame(problem.travel)[:, [columns[name] for name in lattice.axes]]
+            frame = path_frame(problem.travel)
+            self.directions = frozen(np.array([frame[:, columns[name]] for name in lattice.axes]))
             spacing = np.array([a.spacing for a in axes])
-            self.offsets = frozen((self.indices * spacing) @ directions.T)
+            self.offsets = frozen((self.indices * spacing) @ self.directions)
         else:
+            self.directions = frozen(np.zeros((0, 3)))
             self.offsets = frozen(np.zeros((1, 3)))
         progress = np.arange(lattice.divisions + 1) / lattice.divisions
         along = problem.start[:3] + progress[:, None] * problem.travel
@@ -104,4 +107,4 @@ class LayeredLattice:
 
     def motion(self, path: IntArray) -> Motion:
         """The motion through node `path[i]` of each layer i, (m + 1,)."""
-        return Motion(self.problem, self.nominal.positions + self.offsets[path])
+        return self.nominal.displaced(self.offsets[path])

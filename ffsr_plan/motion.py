@@ -6,6 +6,7 @@ reacts to the arms (free-flying) or turns steadily from start to goal (attitude-
 
 from __future__ import annotations
 
+import copy
 from functools import cached_property
 
 import numpy as np
@@ -43,6 +44,12 @@ class Motion:
     def reaction(self) -> Reaction:
         """The base rotation that the joint path, one straight segment, brings about."""
         return Reaction(self.problem.robot, self.joint_values[[0, -1]])
+
+    def displaced(self, offsets: Array) -> Motion:
+        """The same motion with the base displaced by (m + 1, 3) [m] at the corners."""
+        twin = copy.copy(self)
+        twin.positions = frozen(self.positions + offsets)
+        return twin
 
     def configurations(self) -> Array:
         """(m + 1, nq) configurations at the corners."""

@@ -1,20 +1,21 @@
 """The exact lattice optimum: a shortest path over the layers, edges certified when it uses them.
 
 F is additive over nodes and edges on a lattice whose nodes have one configuration each. Unproven
-edges are taken as free; the shortest path is certified; if an edge is refused the search is taken up
-again behind it, until a path holds. Since assuming edges free can only shorten the path, the first
-one that holds is the optimum (lazy search).
+edges are taken as free; the shortest path is certified; if an edge is refused the search is taken
+up again behind it, until a path holds. Since assuming edges free can only shorten the path, the
+first one that holds is the optimum (lazy search).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numba import njit
 
-from ffsr_plan.colony.records import History, OnCycle, Search, Trails
+from ffsr_plan.colony.compiling import first_call
+from ffsr_plan.colony.records import History, Search, Trails, Watch
 from ffsr_plan.errors import PlanningError
 from ffsr_plan.inputs import Array, IntArray, States, frozen
 from ffsr_plan.roadmap import Roadmap
@@ -26,14 +27,14 @@ _REFUSED = -1
 class LatticeOptimum:
     """The exact optimum as a planner; it has no parameters and ignores the seed.
 
-    Of equally short paths, the one whose nodes have the lowest indices from the goal backwards wins,
-    always the same one.
+    Of equally short paths, the one whose nodes have the lowest indices from the goal backwards
+    wins, always the same one.
     """
 
     name: ClassVar[str] = "lattice-optimum"
 
     def search(
-        self, roadmap: Roadmap, rng: np.random.Generator, on_cycle: OnCycle | None = None
+        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
     ) -> Search:
         """Find the optimum.
 
@@ -55,56 +56,54 @@ def lattice_optimum(roadmap: Roadmap) -> IntArray:
     Raises:
         NoPath: there is none.
     """
-    m, n, origin = roadmap.lattice.divisions, roadmap.lattice.size, roadmap.lattice.origin
-    edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
-    costs = np.full((m + 1, n), np.inf)
+    path = lazy_shortest_path(
+        roadmap.edge_costs()[None],
+        roadmap.node_costs(),
+        roadmap.status,
+        roadmap.lattice.origin,
+        roadmap.prove_path,
+    )
+    if path is None:
+        raise roadmap.no_path() or PlanningError("the lattice optimum was lost")
+    return path
+
+
+def lazy_shortest_path(
+    edge_costs: Array,
+    node_costs: Array,
+    status: States,
+    origin: int,
+    prove: Callable[[IntArray], bool],
+) -> IntArray | None:
+    """The shortest path over layers whose edges are proven when it uses them.
+
+    Args:
+        edge_costs: (m, n, n), or (1, n, n) where all layers are alike.
+        node_costs: (m + 1, n), infinite where a node may not be entered.
+        status: (m, n, n) what is known of each edge; refused ones are left out.
+        origin: the node of layers 0 and m.
+        prove: certifies the edges of a path (m + 1,), notes refusals in `status`, and tells whether
+            all are free.
+
+    Returns:
+        (m + 1,) nodes, or None if there is no path.
+    """
+    from ffsr_plan.bellman import extend
+
+    m, n = len(status), status.shape[1]
+    costs, before = np.full((m + 1, n), np.inf), np.zeros((m + 1, n), dtype=np.int64)
     costs[0, origin] = 0.0
-    before = np.zeros((m + 1, n), dtype=np.int64)
     first = 0
     while True:
-        extend(first, edge_costs, node_costs, roadmap.status, costs, before)
+        with first_call(extend):
+            extend(first, edge_costs, node_costs, status, costs, before)
         if not np.isfinite(costs[m, origin]):
-            raise roadmap.no_path() or PlanningError("the lattice optimum was lost")
+            return None
         path = np.empty(m + 1, dtype=np.int64)
         path[m] = origin
         for i in range(m, 0, -1):
             path[i - 1] = before[i, path[i]]
-        if roadmap.prove_path(path):
+        if prove(path):
             return path
-        refused = roadmap.status[np.arange(m), path[:-1], path[1:]] == _REFUSED
+        refused = status[np.arange(m), path[:-1], path[1:]] == _REFUSED
         first = int(np.argmax(refused))
-
-
-@njit(cache=True, nogil=True)
-def extend(
-    first: int,
-    edge_costs: Array,
-    node_costs: Array,
-    status: States,
-    costs: Array,
-    before: IntArray,
-) -> None:
-    """Shortest ways from the start, layer after layer from `first` on (Bellman).
-
-    Args:
-        first: the first layer whose edges are to be looked at; `costs` hold up to it.
-        edge_costs: (n, n).
-        node_costs: (m + 1, n), infinite where a node may not be entered.
-        status: (m, n, n); refused edges are left out.
-        costs: (m + 1, n) least cost of reaching each node, updated.
-        before: (m + 1, n) the node that the shortest way comes from, updated.
-    """
-    m, n = len(status), len(edge_costs)
-    for i in range(first, m):
-        costs[i + 1] = np.inf
-        for j in range(n):
-            so_far = costs[i, j]
-            if so_far == np.inf:
-                continue
-            for k in range(n):
-                total = so_far + edge_costs[j, k]
-                if total < costs[i + 1, k] and status[i, j, k] != _REFUSED:
-                    costs[i + 1, k] = total
-                    before[i + 1, k] = j
-        for k in range(n):
-            costs[i + 1, k] += node_costs[i + 1, k]

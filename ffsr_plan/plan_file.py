@@ -56,6 +56,7 @@ def to_dict(plan: Plan) -> dict[str, Any]:
         "length": plan.length,
         "objective": plan.objective,
         "lattice_objective": plan.lattice_objective,
+        "optimum": plan.optimum,
         "clearances": _without_infinity(plan.clearances),
         "history": {k: v.tolist() for k, v in plan.history._asdict().items()},
         "trails": {k: v.tolist() for k, v in plan.trails._asdict().items()},
@@ -63,6 +64,7 @@ def to_dict(plan: Plan) -> dict[str, Any]:
             **plan.certificate._asdict(),
             "least_clearance": _without_infinity(np.array([plan.certificate.least_clearance]))[0],
         },
+        "interrupted": plan.interrupted,
         "seconds": plan.seconds,
     }
 
@@ -93,10 +95,12 @@ def from_dict(data: dict[str, Any]) -> Plan:
         length=data["length"],
         objective=data["objective"],
         lattice_objective=data["lattice_objective"],
+        optimum=data["optimum"],
         clearances=_with_infinity(data["clearances"]),
         history=History(**{k: _numbers(v) for k, v in data["history"].items()}),
         trails=Trails(**{k: _numbers(v) for k, v in data["trails"].items()}),
         certificate=Certificate(**certificate),
+        interrupted=data["interrupted"],
         seconds=data["seconds"],
     )
 

@@ -2,70 +2,122 @@
 
 from __future__ import annotations
 
+import math
 import time
+from dataclasses import replace
 
 import numpy as np
 
-from ffsr_plan.colony import AntSystem
+from ffsr_plan.colony import AntSystem, MaxMinAntSystem, Search, Watch
+from ffsr_plan.colony.parallel import run_colonies
 from ffsr_plan.colony.records import OnCycle
-from ffsr_plan.errors import InvalidInput
-from ffsr_plan.inputs import frozen, whole_number
+from ffsr_plan.errors import FfsrPlanError, InvalidInput
+from ffsr_plan.inputs import frozen, number, whole_number
+from ffsr_plan.optimum import LatticeOptimum, lattice_optimum
 from ffsr_plan.problem import Problem
-from ffsr_plan.result import Plan
+from ffsr_plan.refinement import refined
+from ffsr_plan.result import Plan, Planner
 from ffsr_plan.roadmap import Roadmap
 
-PLANNERS = {planner.name: planner for planner in (AntSystem,)}
+PLANNERS: dict[str, type[Planner]] = {
+    planner.name: planner for planner in (AntSystem, MaxMinAntSystem, LatticeOptimum)
+}
 """Planner classes by the name that scenario files and the command line use."""
 
 
 def plan(
     problem: Problem,
-    planner: AntSystem | None = None,
+    planner: Planner | None = None,
     seed: int | np.random.Generator = 0,
     *,
+    refine: bool = True,
+    colonies: int = 1,
+    workers: int = 1,
+    time_limit: float | None = None,
     on_cycle: OnCycle | None = None,
 ) -> Plan:
     """Plan a motion in which no link touches an obstacle or another link, proven edge by edge.
 
+    Ctrl-C and `time_limit` end the search early; the best plan so far is returned, marked as
+    `interrupted`.
+
     Args:
         problem: what to plan.
-        planner: settings of the planner; the paper's `AntSystem()` by default.
-        seed: a whole number >= 0, or a generator. The same seed gives the same plan, bit for bit.
-        on_cycle: called with a `Cycle` after each cycle of the colony.
+        planner: settings of the planner; `MaxMinAntSystem()` by default.
+        seed: a whole number >= 0, or a generator. The same seed gives the same plan, bit for bit,
+            whatever the number of workers.
+        refine: whether to move the path off the lattice in the end, to where F is lower.
+        colonies: independent colonies; the best path of all is returned.
+        workers: processes that they are spread over.
+        time_limit: [s] for the search, from its beginning.
+        on_cycle: called with a `Cycle` after each cycle; for a single colony.
 
     Raises:
-        InvalidInput: not a planner or not a seed.
+        InvalidInput: an argument that is not allowed.
         StartInCollision, GoalInCollision: with link, obstacle and depth.
         NoPath: the lattice holds no free path, with the layer that cannot be passed.
+        PlanningError: no path was found in time, or a worker died.
     """
     begin = time.perf_counter()
-    planner = AntSystem() if planner is None else planner
+    planner = MaxMinAntSystem() if planner is None else planner
     if not isinstance(planner, tuple(PLANNERS.values())):
         raise InvalidInput("planner", planner, f"one of {', '.join(PLANNERS)}, as an object")
-    if isinstance(seed, np.random.Generator):
-        rng, number = seed, None
-    else:
-        number = whole_number("seed", seed, at_least=0)
-        rng = np.random.default_rng(number)
+    colonies = whole_number("colonies", colonies, at_least=1)
+    workers = whole_number("workers", workers, at_least=1)
+    seconds = math.inf if time_limit is None else number("time_limit", time_limit, above=0.0)
+    if on_cycle is not None and colonies > 1:
+        raise InvalidInput("on_cycle", on_cycle, "a callback only where colonies = 1")
+    rng, seed_number = _generator(seed)
     roadmap = Roadmap(problem)
-    found = planner.search(roadmap, rng, on_cycle)
+    if colonies == 1:
+        watch = Watch(on_cycle, time.monotonic() + seconds)
+        found = planner.search(roadmap, rng, watch)
+    else:
+        found = _best(
+            roadmap, run_colonies(roadmap, planner, rng.spawn(colonies), workers, seconds)
+        )
+        roadmap.prove_path(found.path)
+    objective = roadmap.objective(found.path)
+    exact = isinstance(planner, LatticeOptimum)
+    optimum = objective if exact else roadmap.objective(lattice_optimum(roadmap))
     indices = roadmap.lattice.indices[found.path]
     axes = indices.shape[1]
-    nodes = indices if axes > 1 else indices.sum(axis=1)  # (m + 1,) for one axis, and for none
-    nodes.setflags(write=False)
-    objective = roadmap.objective(found.path)
-    return Plan(
+    result = Plan(
         problem=problem,
         planner=planner,
-        seed=number,
-        nodes=nodes,
+        seed=seed_number,
+        nodes=frozen(indices if axes > 1 else indices.sum(axis=1)),
         configurations=frozen(roadmap.lattice.motion(found.path).configurations()),
         length=roadmap.path_length(found.path),
         objective=objective,
         lattice_objective=objective,
+        optimum=min(optimum, objective),  # equal paths may differ in their last digit
         clearances=frozen(roadmap.path_clearances(found.path)),
         history=found.history,
         trails=found.trails,
-        certificate=roadmap.certificate(found.path),
-        seconds=time.perf_counter() - begin,
+        certificate=roadmap.proofs(),
+        interrupted=found.interrupted,
+        seconds=0.0,
     )
+    if refine:
+        result = refined(result, roadmap.lattice, roadmap.prover)
+    proven = roadmap.prover.least_clearance(
+        result.configurations[:, :3] - roadmap.lattice.nominal.positions, result.clearances
+    )
+    certificate = result.certificate._replace(least_clearance=proven)
+    return replace(result, certificate=certificate, seconds=time.perf_counter() - begin)
+
+
+def _generator(seed: int | np.random.Generator) -> tuple[np.random.Generator, int | None]:
+    if isinstance(seed, np.random.Generator):
+        return seed, None
+    given = whole_number("seed", seed, at_least=0)
+    return np.random.default_rng(given), given
+
+
+def _best(roadmap: Roadmap, results: list[Search | FfsrPlanError]) -> Search:
+    """The best of all colonies, the first among equals; their error if none has a path."""
+    found = [r for r in results if isinstance(r, Search)]
+    if not found:
+        raise next(r for r in results if isinstance(r, FfsrPlanError))
+    return min(found, key=lambda search: roadmap.objective(search.path))

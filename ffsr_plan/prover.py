@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from ffsr_plan.inputs import Array, frozen
 from ffsr_plan.motion import Motion
 from ffsr_plan.travel import swing
 
-_BOUND_GAP = 1e-3  # [m] between the clearance proven along an edge and the least one met
+_SLACK = 0.05  # between the clearance proven along a path and the least one met, relative
 
 
 class Prover:
@@ -66,10 +67,21 @@ class Prover:
         speed = float(self.base_travel(layer, tail, head)) + self.swing
         return certify(self._along(layer, tail, head), ends, speed, self._problem.tolerance)
 
-    def bound(self, layer: int, tail: Array, head: Array, ends: tuple[float, float]) -> float:
-        """Proven lower bound on the clearance [m] along an edge that is free."""
-        speed = float(self.base_travel(layer, tail, head)) + self.swing
-        return clearance_bound(self._along(layer, tail, head), ends, speed, _BOUND_GAP)
+    def least_clearance(self, offsets: Array, clearances: Array) -> float:
+        """Proven lower bound on the clearance [m] all along a path whose edges are free.
+
+        Args:
+            offsets: (m + 1, 3) of the path's nodes.
+            clearances: (m + 1,) at the nodes [m].
+        """
+        bound = met = float(np.min(clearances))
+        for layer, (first, last) in enumerate(pairwise(map(float, clearances))):
+            tail, head = offsets[layer], offsets[layer + 1]
+            speed = float(self.base_travel(layer, tail, head)) + self.swing
+            along = self._along(layer, tail, head)
+            here, met = clearance_bound(along, (first, last), speed, met, _SLACK)
+            bound = min(bound, here)
+        return bound
 
     def nearest_obstacle(self, layer: int, tail: Array, head: Array, time: float) -> int | str:
         """The obstacle nearest to the robot at a time on an edge."""
@@ -127,10 +139,15 @@ class Prover:
     def _at(self, layer: int, time: float) -> Array:
         """Nominal configuration on an edge.
 
-        Halving asks for the same few times on all edges: computed for all layers at once, and kept.
+        Halving asks for the same few times on all edges: computed for all layers at once, and kept;
+        a time that is asked for brings its fellows down to sixteenths along.
         """
         if time not in self._between:
-            layers = np.arange(len(self._corners) - 1)
-            self._between[time] = frozen(self._motion.at(layers, np.full(len(layers), time)))
+            coarse = np.arange(1, 16) / 16.0
+            times = coarse if time in coarse else np.array([time])
+            layers, edges = np.arange(len(self._corners) - 1), len(self._corners) - 1
+            found = self._motion.at(np.tile(layers, len(times)), np.repeat(times, edges))
+            for t, q in zip(times.tolist(), found.reshape(len(times), edges, -1), strict=True):
+                self._between[t] = frozen(q)
         at: Array = self._between[time][layer]
         return at

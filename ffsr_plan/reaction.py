@@ -23,6 +23,7 @@ _TO_COEFFICIENTS = (
     legendre.legvander(_X, _ORDER - 1) * _WEIGHTS[:, None] * (np.arange(_ORDER) + 0.5)
 ).T
 _MAGNUS_POINTS = np.array([0.5 - np.sqrt(15) / 10, 0.5, 0.5 + np.sqrt(15) / 10])
+_WHOLE_AND_HALVES = np.array([[0.0, 0.0, 0.5], [1.0, 0.5, 1.0]])  # begin and end of three steps
 _ANGLE_TOLERANCE = 1e-11
 _RATE_TOLERANCE = 1e-11
 _MOST_SUBSTEPS = 4096
@@ -85,12 +86,12 @@ class Reaction:
         rates = np.einsum("eknij,ej->ekni", maps, steps)
         self._substeps = substeps
         self._coefficients = np.einsum("ln,ekni->ekli", _TO_COEFFICIENTS, rates)
-        zero, one = np.zeros((edges, substeps)), np.ones((edges, substeps))
-        whole = self._step(self._coefficients, zero, one)
-        halves = attitude.multiply(
-            self._step(self._coefficients, zero, 0.5 * one),
-            self._step(self._coefficients, 0.5 * one, one),
+        begin_end = np.broadcast_to(_WHOLE_AND_HALVES, (edges, substeps, 2, 3))
+        steps_made = self._step(
+            self._coefficients[:, :, None], begin_end[:, :, 0], begin_end[:, :, 1]
         )
+        whole = steps_made[:, :, 0]
+        halves = attitude.multiply(steps_made[:, :, 1], steps_made[:, :, 2])
         self.error = float(np.max(np.sum(attitude.angle_between(whole, halves), axis=1), initial=0))
         starts = [np.broadcast_to(attitude.IDENTITY, (edges, 4))]
         for k in range(substeps):

@@ -5,22 +5,34 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.attitude import to_angles
-from ffsr_plan.colony import AntSystem, History, Trails
+from ffsr_plan.colony import History, Search, Trails, Watch
 from ffsr_plan.errors import InvalidInput
 from ffsr_plan.inputs import Array, IntArray, finite_array
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.motion import Motion
 from ffsr_plan.problem import Problem
-from ffsr_plan.roadmap import Certificate
+from ffsr_plan.roadmap import Certificate, Roadmap
 
 if TYPE_CHECKING:  # these import this module; a plan calls them when asked to
     from ffsr_plan.verify import Report
+
+
+class Planner(Protocol):
+    """What `plan` can run: settings with a name and a search."""
+
+    name: ClassVar[str]
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def search(
+        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
+    ) -> Search:
+        """Search a roadmap for a path, all of whose edges are proven free."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,27 +48,36 @@ class Plan:
         configurations: (m + 1, nq) base pose in the world [m, quaternion xyzw] and joints [rad, m].
         length: L of Eq. 6 [m].
         objective: F of Eq. 8 [length units].
-        lattice_objective: F of the path on the lattice.
+        lattice_objective: F of the path on the lattice, before refinement.
+        optimum: F of the exact lattice optimum.
         clearances: (m + 1,) least link-to-sphere distance at each node [m].
         history: per cycle, best F, best and mean F of the cycle, number of different paths.
         trails: the edges that ants walked, with ants and pheromone.
         certificate: edges proven, Coal queries spent, proven clearance along the whole motion.
+        interrupted: whether Ctrl-C or the time limit ended the search early.
         seconds: computing time.
     """
 
     problem: Problem
-    planner: AntSystem
+    planner: Planner
     seed: int | None
     nodes: IntArray
     configurations: Array
     length: float
     objective: float
     lattice_objective: float
+    optimum: float
     clearances: Array
     history: History
     trails: Trails
     certificate: Certificate
+    interrupted: bool
     seconds: float
+
+    @property
+    def gap(self) -> float:
+        """(lattice_objective - optimum) / optimum: how far the search stayed above the optimum."""
+        return (self.lattice_objective - self.optimum) / self.optimum
 
     @cached_property
     def motion(self) -> Motion:
@@ -102,8 +123,9 @@ class Plan:
         along, across = lattice.nominal.positions, lattice.offsets
         begin = along[trails.layer] + across[trails.tail]
         end = along[trails.layer + 1] + across[trails.head]
-        laid = np.log(trails.laid)
-        strength = (laid - laid.min()) / max(float(np.ptp(laid)), 1e-12)
+        laid = trails.laid / np.min(trails.laid, where=trails.laid > 0.0, initial=np.inf)
+        strength = np.log1p(laid)
+        strength /= max(float(strength.max()), 1e-12)
         order = np.argsort(strength, kind="stable")
         return np.stack([begin, end], axis=1)[order], strength[order]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -69,6 +70,13 @@ class Roadmap:
         self.status: States = np.zeros((m, n, n), dtype=np.int8)
         self._verdicts: dict[tuple[int, int, int], Verdict] = {}
 
+    def forget(self) -> Roadmap:
+        """The same nodes with nothing known of the edges: a clean start for another colony."""
+        twin = copy.copy(self)
+        twin.status = np.zeros_like(self.status)
+        twin._verdicts = {}
+        return twin
+
     def certify(self, layer: int, tail: int, head: int) -> Verdict:
         """The verdict on the edge from node `tail` of `layer` to node `head` of the next one."""
         key = (layer, tail, head)
@@ -78,8 +86,8 @@ class Roadmap:
             verdict = self.prover.certify(layer, offsets[tail], offsets[head], ends)
             self._verdicts[key] = verdict
             self.status[key] = FREE if verdict.free else REFUSED
-            if verdict.least_clearance < 0.0:
-                self._rule_out(layer, tail, head, verdict)
+            if not verdict.free:
+                rule_out(self.status[layer], offsets, offsets, (tail, head), verdict)
         return self._verdicts[key]
 
     def free(self, layer: int, tail: int, head: int) -> bool:
@@ -97,8 +105,8 @@ class Roadmap:
         """Mark the edges that the clearances at their ends prove free without a query."""
         travel = self.lattice.base_travel + (self.prover.swing + ROUNDING)
         for i in range(self.lattice.divisions):
-            tails = np.where(self.admissible[i], self.clearances[i], -np.inf)
-            heads = np.where(self.admissible[i + 1], self.clearances[i + 1], -np.inf)
+            tails = np.where(self.admissible[i], self.clearances[i], np.nan)
+            heads = np.where(self.admissible[i + 1], self.clearances[i + 1], np.nan)
             self.status[i][tails[:, None] + heads > travel] = FREE
 
     def path_length(self, path: IntArray) -> float:
@@ -122,15 +130,6 @@ class Roadmap:
         costs = np.where(self.admissible, nearness(self.problem, self.clearances), np.inf)
         costs[[0, -1], self.lattice.origin] = 0.0  # layers 0 and m do not count in Eq. 8
         return frozen(costs)
-
-    def certificate(self, path: IntArray) -> Certificate:
-        """Sum up the proofs along a path all of whose edges are free."""
-        offsets, clearances = self.lattice.offsets[path], self.path_clearances(path)
-        bounds = [
-            self.prover.bound(i, offsets[i], offsets[i + 1], (float(a), float(b)))
-            for i, (a, b) in enumerate(pairwise(clearances))
-        ]
-        return self.proofs()._replace(least_clearance=min(bounds))
 
     def proofs(self) -> Certificate:
         """What has been proven so far; no clearance of any path yet."""
@@ -171,17 +170,28 @@ class Roadmap:
                 found.add(self.prover.nearest_obstacle(layer + 1, at, at, 0.0))
         return tuple(sorted(found, key=lambda name: (isinstance(name, str), name)))
 
-    def _rule_out(self, layer: int, tail: int, head: int, verdict: Verdict) -> None:
-        """Refuse every edge that passes, at the same time, within the depth just met.
 
-        Attitude and joints are the same there, and a translation shorter than the penetration depth
-        does not lead out of the obstacle.
-        """
-        offsets, t = self.lattice.offsets, verdict.time
-        met = (1.0 - t) * offsets[tail] + t * offsets[head]
-        there = (1.0 - t) * offsets[:, None] + t * offsets[None]
-        apart = np.linalg.norm(there - met, axis=2)
-        self.status[layer][apart < -verdict.least_clearance * (1.0 - 1e-9)] = REFUSED
+def rule_out(
+    status: States, tails: Array, heads: Array, edge: tuple[int, int], verdict: Verdict
+) -> None:
+    """Refuse every edge of a layer that passes, at the same time, within the depth just met.
+
+    Attitude and joints are the same there, and a translation shorter than the penetration depth
+    does not lead out of the obstacle.
+
+    Args:
+        status: (j, k) of the layer's edges, updated.
+        tails: (j, 3) offsets at the edges' beginnings [m].
+        heads: (k, 3) offsets at their ends [m].
+        edge: tail and head of the edge that was refused.
+        verdict: why.
+    """
+    depth, t = -verdict.least_clearance * (1.0 - 1e-9), verdict.time
+    if depth <= 0.0:
+        return
+    met = (1.0 - t) * tails[edge[0]] + t * heads[edge[1]]
+    there = (1.0 - t) * (tails[:, None] - met) + t * (heads[None] - met)
+    status[np.einsum("jki,jki->jk", there, there) < depth**2] = REFUSED
 
 
-__all__ = ["FREE", "REFUSED", "UNKNOWN", "Certificate", "Roadmap"]
+__all__ = ["FREE", "REFUSED", "UNKNOWN", "Certificate", "Roadmap", "rule_out"]

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import pydantic
 from pydantic import BaseModel, ConfigDict, Field
 
 from ffsr_plan import bundled
 from ffsr_plan.axes import Axis, Lattice
-from ffsr_plan.colony import AntSystem
+from ffsr_plan.colony import MaxMinAntSystem
 from ffsr_plan.errors import InvalidInput, unknown_name
+from ffsr_plan.inputs import one_of, whole_number
 from ffsr_plan.paper import DIVISIONS
 from ffsr_plan.planner import PLANNERS
 from ffsr_plan.problem import MODES, Problem
+from ffsr_plan.result import Planner
 from ffsr_plan.robot import load_robot
 from ffsr_plan.scene import Scene
 
@@ -92,10 +94,11 @@ class ObjectiveTable(_Table):
 
 
 class PlannerTable(_Table):
-    """The table `[planner]`."""
+    """The table `[planner]`: what is not given stays at the planner's default."""
 
-    name: Literal["ant-system"] = "ant-system"
+    name: str = MaxMinAntSystem.name
     seed: int = 0
+    refine: bool = True
     ants: int | None = None
     cycles: int | None = None
     alpha: Number | None = None
@@ -103,6 +106,10 @@ class PlannerTable(_Table):
     rho: Number | None = None
     Q: Number | None = None
     C: Number | None = None
+    improved: int | None = None
+    patience: int | None = None
+    cost_aware: bool | None = None
+    pheromone: bool | None = None
 
 
 class ScenarioFile(_Table):
@@ -123,8 +130,9 @@ class Scenario(NamedTuple):
 
     title: str
     problem: Problem
-    planner: AntSystem
+    planner: Planner
     seed: int
+    refine: bool
 
 
 def load_scenario(source: str | Path) -> Problem:
@@ -196,10 +204,14 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         lattice=Lattice(divisions=file.lattice.divisions, **axes),
         **file.objective.model_dump(),
     )
-    settings = file.planner.model_dump(exclude={"name", "seed"}, exclude_none=True)
-    if file.planner.seed < 0:
-        raise InvalidInput("planner.seed", file.planner.seed, "a whole number of at least 0")
-    return Scenario(file.title, problem, PLANNERS[file.planner.name](**settings), file.planner.seed)
+    table = file.planner
+    kind = PLANNERS[one_of("planner.name", table.name, list(PLANNERS))]
+    settings = table.model_dump(exclude={"name", "seed", "refine"}, exclude_none=True)
+    for key in settings:
+        if key not in kind.__dataclass_fields__:
+            raise unknown_name(f"planner ({kind.name})", key, kind.__dataclass_fields__)
+    seed = whole_number("planner.seed", table.seed, at_least=0)
+    return Scenario(file.title, problem, kind(**settings), seed, table.refine)
 
 
 def _explain(what: str, error: Any) -> InvalidInput:  # noqa: ANN401 - pydantic's error record

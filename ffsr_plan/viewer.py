@@ -81,7 +81,8 @@ def page(plan: Plan, title: str = "") -> str:
     data = {
         "title": title or f"{plan.problem.robot.name}, {plan.problem.mode}",
         "subtitle": f"{plan.planner.name}: L {plan.length:.3f} m, F {plan.objective:.2f}, "
-        f"δ {plan.problem.delta:g}, proven clearance {plan.certificate.least_clearance:.4f} m",
+        f"δ {plan.problem.delta:g}, lattice gap {plan.gap:.2%}, "
+        f"proven clearance {plan.certificate.least_clearance:.3f} m",
         "commands": log.commands,
         "seconds": SECONDS,
         "clearances": [round(float(c), 5) if np.isfinite(c) else None for c in clearances],

@@ -47,11 +47,25 @@ def test_an_edge_is_refused_only_where_it_comes_nearer_than_the_tolerance(spare)
     assert verdict.free or verdict.least_clearance <= 1e-4
 
 
-@given(st.floats(1e-6, 3.0), st.floats(1e-4, 0.1))
-def test_the_clearance_bound_is_below_the_least_clearance_and_near_it(spare, gap):
+@given(st.floats(1e-6, 3.0), st.floats(0.01, 0.5))
+def test_the_clearance_bound_is_below_the_least_clearance_and_near_it(spare, slack):
     _, clearance = along_a_line(1.0 + spare)
-    bound = clearance_bound(clearance, (clearance(0.0), clearance(1.0)), 4.0, gap)
-    assert max(spare - gap - 1e-8, 0.8 * spare) <= bound <= spare
+    ends = (clearance(0.0), clearance(1.0))
+    bound, met = clearance_bound(clearance, ends, 4.0, np.inf, slack)
+    assert (1.0 - 1.1 * slack) * spare <= bound <= spare * (1 + 1e-12) <= met * (1 + 1e-9)
+
+
+def test_an_edge_clearer_than_the_rest_of_the_path_is_not_looked_at_closely():
+    asked = []
+
+    def clearance(time):
+        asked.append(time)
+        return along_a_line(3.0)[1](time)
+
+    ends = (clearance(0.0), clearance(1.0))
+    bound, met = clearance_bound(clearance, ends, 4.0, 0.1, 0.05)
+    assert (bound, met) == (0.1, 0.1)
+    assert len(asked) < 10
 
 
 def small_problem(seed, mode="free-flying"):

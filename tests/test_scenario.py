@@ -40,7 +40,7 @@ def write(tmp_path, text):
 
 
 def test_a_scenario_is_read_as_written(tmp_path, robot):
-    title, problem, planner, seed = fp.read_scenario(write(tmp_path, GOOD))
+    title, problem, planner, seed, refine = fp.read_scenario(write(tmp_path, GOOD))
     assert title == "one sphere"
     assert problem.mode == "free-flying"
     assert np.array_equal(problem.start, robot.configuration(joints={"left_1": 0.2}))
@@ -49,6 +49,7 @@ def test_a_scenario_is_read_as_written(tmp_path, robot):
     assert (problem.delta, problem.length_unit, problem.clearance_cap) == (2.0, 0.1, None)
     assert planner == fp.AntSystem(ants=8, rho=0.7)
     assert seed == 5
+    assert refine
     assert fp.load_scenario(write(tmp_path, GOOD)).delta == 2.0
 
 
@@ -95,8 +96,9 @@ MISTAKES = [
     ("left_1 = 0.2", "left_1 = 9.2", r"left_1.*-1\.8 to 1\.8"),
     ('"planar_dual_arm"', '"planar_arm"', r"did you mean 'planar_dual_arm'"),
     ("[start]", 'mode = "floating"\n[start]', r"mode.*free-flying, attitude-held"),
-    ('"ant-system"', '"ants"', r"planner\.name.*'ant-system'"),
+    ('"ant-system"', '"ants"', r"planner\.name.*did you mean 'ant-system'"),
     ("[6, 0, 0]", "[6, 0, 0]\nattitude = [0.1, 0, 0]", r"goal\.attitude.*follows from the arms"),
+    ("rho = 0.7", "patience = 3", r"planner \(ant-system\).*patience"),
     ("title = ", "title == ", r"a TOML file"),
 ]
 

@@ -2,6 +2,6 @@
 
 from ffsr_plan.colony.ant_system import AntSystem
 from ffsr_plan.colony.max_min import MaxMinAntSystem
-from ffsr_plan.colony.records import Cycle, History, Search, Trails
+from ffsr_plan.colony.records import Cycle, History, Search, Trails, Watch
 
-__all__ = ["AntSystem", "MaxMinAntSystem", "Cycle", "History", "Search", "Trails"]
+__all__ = ["AntSystem", "Cycle", "History", "MaxMinAntSystem", "Search", "Trails", "Watch"]

@@ -8,9 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from ffsr_plan import paper
-from ffsr_plan.colony.records import Cycle, History, OnCycle, Search, Trails
-from ffsr_plan.colony.walk import walk
-from ffsr_plan.colony.ways import close_refused, open_ways
+from ffsr_plan.colony.compiling import first_call
+from ffsr_plan.colony.records import Cycle, History, Search, Trails, Watch
 from ffsr_plan.errors import PlanningError
 from ffsr_plan.inputs import Array, IntArray, frozen, number, whole_number
 from ffsr_plan.roadmap import Roadmap
@@ -62,13 +61,14 @@ class AntSystem:
             object.__setattr__(self, field, value)
 
     def search(
-        self, roadmap: Roadmap, rng: np.random.Generator, on_cycle: OnCycle | None = None
+        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
     ) -> Search:
         """Run the colony.
 
         Raises:
             NoPath: proven, when every way on from the start has been refused.
         """
+        watch = watch or Watch()
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
         roadmap.prove_obvious()
         walk = Walk(self, roadmap, rng)
@@ -78,29 +78,37 @@ class AntSystem:
         along = np.broadcast_to(np.arange(m + 1), (self.ants, m + 1))
         records: list[tuple[float, float, float, int]] = []
         best, best_path = np.inf, np.zeros(m + 1, dtype=np.int64)
-        for cycle in range(1, self.cycles + 1):
-            paths = walk.tours(tau)
-            costs = edge_costs[paths[:, :-1], paths[:, 1:]].sum(axis=1)
-            costs += node_costs[along, paths].sum(axis=1)
-            leader = int(np.argmin(costs))
-            if costs[leader] < best:
-                best, best_path = float(costs[leader]), paths[leader].copy()
-            edges = (along[:, :-1], paths[:, :-1], paths[:, 1:])
-            deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
-            tau *= self.rho
-            np.add.at(tau, edges, deposit)
-            np.maximum(tau, _FAINT, out=tau)
-            np.add.at(laid, edges, deposit)
-            np.add.at(walked, edges, 1)
-            distinct = len(np.unique(paths, axis=0))
-            records.append((best, float(costs[leader]), float(np.mean(costs)), distinct))
-            if on_cycle is not None:
-                counts = np.zeros((m + 1, n), dtype=np.int64)
-                np.add.at(counts, (along, paths), 1)
-                on_cycle(Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau))
-            if distinct == 1:
-                break
-        return Search(frozen(best_path), _history(records), _trails(walked, laid, tau))
+        interrupted = False
+        try:
+            for cycle in range(1, self.cycles + 1):
+                paths = walk.tours(tau)
+                costs = edge_costs[paths[:, :-1], paths[:, 1:]].sum(axis=1)
+                costs += node_costs[along, paths].sum(axis=1)
+                leader = int(np.argmin(costs))
+                if costs[leader] < best:
+                    best, best_path = float(costs[leader]), paths[leader].copy()
+                edges = (along[:, :-1], paths[:, :-1], paths[:, 1:])
+                deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
+                tau *= self.rho
+                np.add.at(tau, edges, deposit)
+                np.maximum(tau, _FAINT, out=tau)
+                np.add.at(laid, edges, deposit)
+                np.add.at(walked, edges, 1)
+                distinct = len(np.unique(paths, axis=0))
+                records.append((best, float(costs[leader]), float(np.mean(costs)), distinct))
+                if watch.on_cycle is not None:
+                    counts = np.zeros((m + 1, n), dtype=np.int64)
+                    np.add.at(counts, (along, paths), 1)
+                    watch.on_cycle(Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau))
+                interrupted = watch.over() and distinct > 1 and cycle < self.cycles
+                if distinct == 1 or interrupted:
+                    break
+        except KeyboardInterrupt:
+            interrupted = True
+            if not records:
+                raise PlanningError("interrupted before the first cycle was done") from None
+        trails = _trails(walked, laid, tau)
+        return Search(frozen(best_path), _history(records), trails, interrupted)
 
 
 class Walk:
@@ -112,6 +120,8 @@ class Walk:
     """
 
     def __init__(self, settings: AntSystem, roadmap: Roadmap, rng: np.random.Generator) -> None:
+        from ffsr_plan.colony.ways import open_ways
+
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
         self._roadmap, self._rng, self._alpha = roadmap, rng, settings.alpha
         steps = np.maximum(roadmap.lattice.steps, 1e-12)  # a step of no length at all stays visible
@@ -127,14 +137,18 @@ class Walk:
         Raises:
             NoPath: the start has become a dead end.
         """
+        from ffsr_plan.colony.walk import walk
+        from ffsr_plan.colony.ways import close_refused
+
         roadmap, paths = self._roadmap, self._paths
         self._changed[:] = True
         ant, layer = 0, -1
         while True:
-            ant, layer = walk(
-                self._rng, tau, self._alpha, self._log_visibility, self._ways, self._exits,
-                roadmap.status, self._wheels, self._changed, paths, ant, layer,
-            )  # fmt: skip
+            with first_call(walk):
+                ant, layer = walk(
+                    self._rng, tau, self._alpha, self._log_visibility, self._ways, self._exits,
+                    roadmap.status, self._wheels, self._changed, paths, ant, layer,
+                )  # fmt: skip
             if ant == len(paths):
                 return paths
             if ant < 0:

@@ -1,8 +1,8 @@
 """Local search on a path of the lattice, compiled.
 
 The neighbourhood of a path are all paths that are displaced from it, on every layer independently,
-by one of a few steps: to the nodes next to it, and 2, 4, 8, .. nodes along an axis. It holds every
-shift of every segment by such a step, and a small shortest-path problem finds its best member.
+by one of a few steps: to the nodes next to it, and some farther along an axis. It holds every shift
+of every segment by such a step, and a small shortest-path problem finds its best member.
 """
 
 from __future__ import annotations
@@ -15,23 +15,27 @@ from ffsr_plan.inputs import Array, Flags, IntArray
 _ENOUGH = 1e-12  # relative improvement below which a better path does not count
 
 
-def neighbourhood(indices: IntArray) -> IntArray:
+def neighbourhood(indices: IntArray, wide: bool) -> IntArray:
     """(n, w) nodes within one displacement of each node, itself first, -1 where there is none.
 
     Args:
         indices: (n, axes) offset indices of the nodes of a layer.
+        wide: along an axis, all steps up to half its width; else the powers of two among them.
     """
     axes = indices.shape[1]
-    lowest = indices.min(axis=0, initial=0)
-    shape = tuple(int(e) for e in indices.max(axis=0, initial=0) - lowest + 1)
+    if axes == 0:
+        return np.zeros((1, 1), dtype=np.int64)
+    lowest = indices.min(axis=0)
+    shape = tuple(int(e) for e in indices.max(axis=0) - lowest + 1)
     table = np.full(shape, -1, dtype=np.int64)
     table[tuple((indices - lowest).T)] = np.arange(len(indices))
     next_to = np.stack(np.meshgrid(*[[0, -1, 1]] * axes, indexing="ij"), -1).reshape(-1, axes)
     unit = np.eye(axes, dtype=np.int64)
     far = [
-        sign * 2**power * unit[axis]
+        sign * size * unit[axis]
         for axis in range(axes)
-        for power in range(1, shape[axis].bit_length() - 1)
+        for size in range(2, shape[axis] // 2 + 1)
+        if wide or size.bit_count() == 1
         for sign in (1, -1)
     ]
     columns = []
@@ -86,13 +90,11 @@ def _best_neighbour(
     for i in range(m, 0, -1):
         path[i] = nodes[i, a]
         a = before[i, a]
-    return costs[m, 0]
+    return float(costs[m, 0])
 
 
 @njit(cache=True, nogil=True)
-def _best_moves(
-    path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags
-) -> float:
+def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags) -> float:
     """Put the node of each layer in turn to the best place between its neighbours; the gain."""
     m, n = len(path) - 1, len(edge_costs)
     gain = 0.0

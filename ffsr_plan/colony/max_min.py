@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from ffsr_plan import paper
-from ffsr_plan.colony import max_min_cycle as kernel
-from ffsr_plan.colony.local_search import neighbourhood
-from ffsr_plan.colony.records import Cycle, History, OnCycle, Search, Trails
-from ffsr_plan.colony.ways import close_refused, open_ways
+from ffsr_plan.colony.compiling import first_call
+from ffsr_plan.colony.records import Cycle, History, Search, Trails, Watch
 from ffsr_plan.errors import PlanningError
-from ffsr_plan.inputs import Array, frozen, number, whole_number
+from ffsr_plan.inputs import Array, Flags, IntArray, frozen, number, whole_number
 from ffsr_plan.roadmap import Roadmap
 
+if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colony runs
+    from ffsr_plan.colony.max_min_cycle import State
+
 _LARGE = 100  # nodes a layer from which on pheromone lies on nodes, not on edges
+_BREATH = 16  # cycles between two looks at the clock
 
 
 @dataclass(frozen=True)
@@ -25,8 +27,8 @@ class MaxMinAntSystem:
 
     What differs from the paper's colony: ants see what a node costs, not only how far it is
     (visibility 1 / (d_pq + delta / d_imin)); only one path a cycle lays pheromone, which stays
-    between bounds; the best ants of a cycle are improved by local search; the colony starts anew
-    when it no longer gets better. Paths are certified before they count; an edge that is refused is
+    between bounds; some ants of a cycle are improved by local search; the colony starts anew when
+    it no longer gets better. Paths are certified before they count; an edge that is refused is
     closed. On lattices with additive cost the local search does most of the work, as the
     documentation shows.
 
@@ -47,7 +49,7 @@ class MaxMinAntSystem:
     cycles: int = paper.CYCLES
     beta: float | None = None
     rho: float = 0.7
-    improved: int = 3
+    improved: int = 1
     patience: int = 20
     cost_aware: bool = True
     pheromone: bool = True
@@ -65,75 +67,119 @@ class MaxMinAntSystem:
             object.__setattr__(self, field, value)
 
     def search(
-        self, roadmap: Roadmap, rng: np.random.Generator, on_cycle: OnCycle | None = None
+        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
     ) -> Search:
         """Run the colony.
 
         Raises:
             NoPath: proven, when every way on from the start has been refused.
+            PlanningError: no ant found a path, though there is one or that is not known.
         """
-        m, n = roadmap.lattice.divisions, roadmap.lattice.size
+        from ffsr_plan.colony import max_min_cycle as kernel
+        from ffsr_plan.colony.ways import open_ways
+
+        watch = watch or Watch()
         roadmap.prove_obvious()
         ways, exits = open_ways(roadmap.admissible, roadmap.status)
-        edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
-        chance = 0.05 ** (1.0 / m)
-        settings = np.array(
-            [
-                self.rho,
-                (1.0 - chance) / (12.0 * chance),
-                self.improved,
-                self.patience or np.inf,
-                self.pheromone,
-            ]
+        state = self._state(roadmap, ways)
+        until, breath = 0, 1 if watch.on_cycle is not None else _BREATH
+        interrupted = False
+        try:
+            while until < self.cycles and not interrupted:
+                until = min(until + breath, self.cycles)
+                self._run_until(until, rng, roadmap, state, exits)
+                if watch.on_cycle is not None:
+                    watch.on_cycle(_report(state, self.cycles))
+                interrupted = watch.over() and until < self.cycles
+        except KeyboardInterrupt:
+            interrupted = True
+        if not np.isfinite(state.values[kernel.BEST]):
+            raise (None if interrupted else roadmap.no_path()) or PlanningError(
+                f"none of {self.ants} ants found a free path in {state.clock[kernel.CYCLE]} "
+                "cycles, which does not mean that there is none: more cycles may find it"
+            )
+        done = state.records[: state.clock[kernel.CYCLE]]
+        history = History(
+            frozen(done[:, 0].copy()),
+            frozen(done[:, 1].copy()),
+            frozen(done[:, 2].copy()),
+            frozen(done[:, 3].astype(np.int64)),
         )
-        rows = 1 if n >= _LARGE else n
-        tau, touched = np.ones((m, rows, n)), np.zeros((m, rows), dtype=bool)
-        paths = np.full((self.ants, m + 1), roadmap.lattice.origin, dtype=np.int64)
-        candidate, best_path, restart_path = (np.zeros(m + 1, dtype=np.int64) for _ in range(3))
-        best, clock = np.array([np.inf]), np.zeros(3, dtype=np.int64)
-        values = np.array([np.inf, np.inf, 1.0])
-        records = np.zeros((self.cycles, 4))
-        walked, laid = np.zeros((m, n, n), dtype=np.int64), np.zeros((m, n, n))
-        fresh = np.full((m, n), -1, dtype=np.int64)
-        visibility = self._visibility(edge_costs, node_costs) * ways
-        untouched = np.cumsum(visibility, axis=2)
-        state = (
-            tau, visibility, edge_costs, node_costs, ways, roadmap.status,
-            neighbourhood(roadmap.lattice.indices), settings, untouched, np.empty((m, n, n)),
-            fresh, touched, paths, np.empty(self.ants), np.full(64, np.inf), candidate,
-            best_path, restart_path, best, clock, values, records, walked, laid,
-        )  # fmt: skip
-        changed = np.zeros((m, n), dtype=bool)
-        until = 1 if on_cycle is not None else self.cycles
-        while until <= self.cycles:
+        layer, tail, head = np.nonzero(state.walked)
+        level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]
+        edges = (layer, tail, head)
+        walked, laid = state.walked[edges], state.laid[edges]
+        trails = Trails(layer, tail, head, walked, laid, level)
+        return Search(frozen(state.best_path), history, trails, interrupted)
+
+    def _run_until(
+        self,
+        until: int,
+        rng: np.random.Generator,
+        roadmap: Roadmap,
+        state: State,
+        exits: IntArray,
+    ) -> None:
+        """Run cycles; certify the paths that they come up with; close what is refused."""
+        from ffsr_plan.colony import max_min_cycle as kernel
+        from ffsr_plan.colony.ways import close_refused
+
+        while True:
             if exits[0, roadmap.lattice.origin] == 0:
                 raise roadmap.no_path() or PlanningError("the ants are lost")
-            if kernel.run_cycles(rng, until, *state) == kernel.PROVE:
-                if not roadmap.prove_path(candidate):
-                    for layer in range(m):
-                        close_refused(layer, roadmap.status, ways, exits, changed)
-                    visibility[changed] *= ways[changed]
-                    untouched[changed] = np.cumsum(visibility[changed], axis=1)
-                    fresh[changed], changed[:] = -1, False
+            with first_call(kernel.run_cycles):
+                outcome = kernel.run_cycles(rng, until, state)
+            if outcome == kernel.DONE:
+                return
+            if roadmap.prove_path(state.candidate):
                 continue
-            if on_cycle is not None:
-                done = records[until - 1]
-                counts = np.zeros((m + 1, n), dtype=np.int64)
-                np.add.at(counts, (np.arange(m + 1), paths), 1)
-                figures = (float(done[0]), float(done[1]), float(done[2]), int(done[3]))
-                on_cycle(Cycle(until, self.cycles, *figures, best_path.copy(), counts, tau))
-            until += 1
-        if not np.isfinite(best[0]):
-            raise roadmap.no_path() or PlanningError(
-                f"none of {self.ants} ants found a free path in {self.cycles} cycles, "
-                "though one exists; more cycles, or local search, may find it"
-            )
-        history = History(*(frozen(records[:, c].copy()) for c in range(3)),
-                          frozen(records[:, 3].astype(np.int64)))  # fmt: skip
-        used = np.nonzero(walked)
-        level = tau[used] if rows > 1 else tau[used[0], 0, used[2]]
-        trails = Trails(*used, walked[used], laid[used], level)
-        return Search(frozen(best_path), history, trails)
+            changed = np.zeros(exits.shape, dtype=bool)
+            for layer in range(len(exits)):
+                close_refused(layer, roadmap.status, state.ways, exits, changed)
+            state.visibility[changed] *= state.ways[changed]
+            state.untouched_wheels[changed] = np.cumsum(state.visibility[changed], axis=1)
+            state.stamps[changed] = -1
+
+    def _state(self, roadmap: Roadmap, ways: Flags) -> State:
+        from ffsr_plan.colony.local_search import neighbourhood
+        from ffsr_plan.colony.max_min_cycle import State
+
+        m, n = roadmap.lattice.divisions, roadmap.lattice.size
+        edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
+        visibility = self._visibility(edge_costs, node_costs) * ways
+        chance = 0.05 ** (1.0 / m)
+        least = (1.0 - chance) / (12.0 * chance)
+        patience = self.patience or np.inf
+        rows = 1 if n >= _LARGE else n
+        indices = roadmap.lattice.indices
+        nowhere = np.zeros(m + 1, dtype=np.int64)
+        return State(
+            edge_costs=edge_costs,
+            node_costs=node_costs,
+            ways=ways,
+            status=roadmap.status,
+            visibility=visibility,
+            untouched_wheels=np.cumsum(visibility, axis=2),
+            near=neighbourhood(indices, wide=False),
+            wide=neighbourhood(indices, wide=True),
+            settings=np.array([self.rho, least, self.improved, patience, self.pheromone]),
+            tau=np.ones((m, rows, n)),
+            touched=np.zeros((m, rows), dtype=bool),
+            wheels=np.empty((m, n, n)),
+            stamps=np.full((m, n), -1, dtype=np.int64),
+            paths=np.full((self.ants, m + 1), roadmap.lattice.origin, dtype=np.int64),
+            costs=np.empty(self.ants),
+            searched=np.full(max(64, self.improved), np.inf),
+            searched_wide=np.full(64, np.inf),
+            candidate=nowhere.copy(),
+            best_path=nowhere.copy(),
+            restart_path=nowhere.copy(),
+            clock=np.zeros(3, dtype=np.int64),
+            values=np.array([np.inf, np.inf, np.inf, 1.0]),
+            records=np.zeros((self.cycles, 4)),
+            walked=np.zeros((m, n, n), dtype=np.int64),
+            laid=np.zeros((m, n, n)),
+        )
 
     def _visibility(self, edge_costs: Array, node_costs: Array) -> Array:
         """(m, n, n) eta^beta, eta = 1 / (d_pq + delta / d_imin)."""
@@ -143,3 +189,14 @@ class MaxMinAntSystem:
         cost = np.maximum(edge_costs[None] + seen[:, None, :], 1e-12)
         cost /= cost.min()
         return np.asarray(1.0 / cost**2 if beta == 2.0 else cost**-beta)
+
+
+def _report(state: State, cycles: int) -> Cycle:
+    from ffsr_plan.colony.max_min_cycle import CYCLE
+
+    number = int(state.clock[CYCLE])
+    best, iteration_best, mean, distinct = map(float, state.records[number - 1])
+    counts = np.zeros(state.node_costs.shape, dtype=np.int64)
+    np.add.at(counts, (np.arange(len(counts)), state.paths), 1)
+    path = state.best_path.copy()
+    return Cycle(number, cycles, best, iteration_best, mean, int(distinct), path, counts, state.tau)

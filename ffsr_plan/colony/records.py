@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ffsr_plan.inputs import Array, IntArray
@@ -30,6 +33,20 @@ class Cycle(NamedTuple):
 
 
 OnCycle = Callable[[Cycle], object]
+
+
+@dataclass(frozen=True)
+class Watch:
+    """What looks on while a planner searches."""
+
+    on_cycle: OnCycle | None = None
+    """Called after each cycle."""
+    deadline: float = math.inf
+    """When to stop, by `time.monotonic()`."""
+
+    def over(self) -> bool:
+        """Whether the time is up."""
+        return time.monotonic() >= self.deadline
 
 
 class History(NamedTuple):
@@ -69,3 +86,5 @@ class Search(NamedTuple):
     """(m + 1,) nodes of the best path."""
     history: History
     trails: Trails
+    interrupted: bool = False
+    """Whether the time limit or Ctrl-C ended it early."""

@@ -1,0 +1,117 @@
+"""Independent colonies, side by side on worker processes.
+
+A worker is a new Python that reads its job from standard input and writes its outcome to standard
+output. So neither the caller's `__main__` nor its threads and locks come along, and a worker that
+dies is seen at once by its exit status.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from ffsr_plan.colony.records import Search, Watch
+from ffsr_plan.errors import FfsrPlanError, PlanningError
+from ffsr_plan.problem import Problem
+from ffsr_plan.roadmap import Roadmap
+
+
+class WorkerDied(PlanningError):  # noqa: N818 - it says what happened
+    """A worker process ended without an outcome.
+
+    Attributes:
+        worker: its number, from 0.
+        colonies: the colonies that it was to run.
+        status: its exit status; negative for a signal.
+    """
+
+    def __init__(self, worker: int, colonies: list[int], status: int) -> None:
+        self.worker, self.colonies, self.status = worker, colonies, status
+        names = ", ".join(map(str, colonies))
+        super().__init__(
+            f"worker {worker} (colonies {names}) died with exit status {status}; "
+            "fewer workers need less memory"
+        )
+
+    def __reduce__(self) -> tuple[type, tuple[int, list[int], int]]:
+        return type(self), (self.worker, self.colonies, self.status)
+
+
+def run_colonies(
+    roadmap: Roadmap,
+    planner: Any,  # noqa: ANN401 - any planner class
+    rngs: list[np.random.Generator],
+    workers: int,
+    seconds: float,
+) -> list[Search | FfsrPlanError]:
+    """One search for each generator, in their order, whatever the number of workers.
+
+    Raises:
+        WorkerDied: with the worker's number, its colonies and its exit status.
+    """
+    if workers == 1:
+        return _run(roadmap, planner, rngs, seconds)
+    shares = [list(range(w, len(rngs), workers)) for w in range(min(workers, len(rngs)))]
+    processes = [
+        subprocess.Popen(
+            [sys.executable, "-c", "from ffsr_plan.colony.parallel import main; main()"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
+        for _ in shares
+    ]
+
+    def collect(worker: int) -> list[Search | FfsrPlanError]:
+        share, process = shares[worker], processes[worker]
+        job = pickle.dumps((roadmap.problem, planner, [rngs[k] for k in share], seconds))
+        answer, _ = process.communicate(job)
+        if process.returncode != 0:
+            raise WorkerDied(worker, share, process.returncode)
+        outcome: list[Search | FfsrPlanError] = pickle.loads(answer)
+        return outcome
+
+    try:
+        with ThreadPoolExecutor(len(shares)) as pool:
+            parts = list(pool.map(collect, range(len(shares))))
+    finally:
+        for process in processes:
+            process.kill()
+    results: list[Any] = [None] * len(rngs)
+    for share, part in zip(shares, parts, strict=True):
+        for k, result in zip(share, part, strict=True):
+            results[k] = result
+    return results
+
+
+def _run(
+    roadmap: Roadmap,
+    planner: Any,  # noqa: ANN401 - any planner class
+    rngs: list[np.random.Generator],
+    seconds: float,
+) -> list[Search | FfsrPlanError]:
+    """No colony knows what another one has proven: its outcome must not depend on that."""
+    deadline = time.monotonic() + seconds
+    results: list[Search | FfsrPlanError] = []
+    for rng in rngs:
+        try:
+            results.append(planner.search(roadmap.forget(), rng, Watch(None, deadline)))
+        except FfsrPlanError as error:
+            results.append(error)
+    return results
+
+
+def main() -> None:
+    """What a worker process runs."""
+    answer = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # whatever prints must not get into the answer
+    problem, planner, rngs, seconds = pickle.load(sys.stdin.buffer)
+    assert isinstance(problem, Problem)
+    with answer:
+        pickle.dump(_run(Roadmap(problem), planner, rngs, seconds), answer)
