@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ffsr_plan.colony import AntSystem, MaxMinAntSystem, Search, Watch
-from ffsr_plan.colony.parallel import run_colonies
+from ffsr_plan.colony.parallel import Outcome, run_colonies
 from ffsr_plan.colony.records import OnCycle
 from ffsr_plan.errors import FfsrPlanError, InvalidInput
 from ffsr_plan.inputs import frozen, number, whole_number
@@ -72,11 +72,16 @@ def plan(
     if colonies == 1:
         watch = Watch(on_cycle, time.monotonic() + seconds)
         found = planner.search(roadmap, rng, watch)
+        proofs = roadmap.proofs()
     else:
-        found = _best(
-            roadmap, run_colonies(roadmap, planner, rng.spawn(colonies), workers, seconds)
+        nothing = roadmap.proofs()
+        outcomes = run_colonies(roadmap, planner, rng.spawn(colonies), workers, seconds)
+        found = _best(roadmap, outcomes)
+        proofs = nothing._replace(
+            edges_free=sum(o.edges_free for o in outcomes),
+            edges_refused=sum(o.edges_refused for o in outcomes),
+            edge_queries=nothing.edge_queries + sum(o.queries for o in outcomes),
         )
-        roadmap.prove_path(found.path)
     objective = roadmap.objective(found.path)
     exact = isinstance(planner, LatticeOptimum)
     optimum = objective if exact else roadmap.objective(lattice_optimum(roadmap))
@@ -95,7 +100,7 @@ def plan(
         clearances=frozen(roadmap.path_clearances(found.path)),
         history=found.history,
         trails=found.trails,
-        certificate=roadmap.proofs(),
+        certificate=proofs,
         interrupted=found.interrupted,
         seconds=0.0,
     )
@@ -115,9 +120,9 @@ def _generator(seed: int | np.random.Generator) -> tuple[np.random.Generator, in
     return np.random.default_rng(given), given
 
 
-def _best(roadmap: Roadmap, results: list[Search | FfsrPlanError]) -> Search:
+def _best(roadmap: Roadmap, outcomes: list[Outcome]) -> Search:
     """The best of all colonies, the first among equals; their error if none has a path."""
-    found = [r for r in results if isinstance(r, Search)]
+    found = [o.result for o in outcomes if isinstance(o.result, Search)]
     if not found:
-        raise next(r for r in results if isinstance(r, FfsrPlanError))
+        raise next(o.result for o in outcomes if isinstance(o.result, FfsrPlanError))
     return min(found, key=lambda search: roadmap.objective(search.path))

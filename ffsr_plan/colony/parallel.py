@@ -13,7 +13,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,13 +44,23 @@ class WorkerDied(PlanningError):  # noqa: N818 - it says what happened
         return type(self), (self.worker, self.colonies, self.status)
 
 
+class Outcome(NamedTuple):
+    """What one colony came to."""
+
+    result: Search | FfsrPlanError
+    edges_free: int
+    edges_refused: int
+    queries: int
+    """Coal queries that its proofs took."""
+
+
 def run_colonies(
     roadmap: Roadmap,
     planner: Any,  # noqa: ANN401 - any planner class
     rngs: list[np.random.Generator],
     workers: int,
     seconds: float,
-) -> list[Search | FfsrPlanError]:
+) -> list[Outcome]:
     """One search for each generator, in their order, whatever the number of workers.
 
     Raises:
@@ -68,13 +78,13 @@ def run_colonies(
         for _ in shares
     ]
 
-    def collect(worker: int) -> list[Search | FfsrPlanError]:
+    def collect(worker: int) -> list[Outcome]:
         share, process = shares[worker], processes[worker]
         job = pickle.dumps((roadmap.problem, planner, [rngs[k] for k in share], seconds))
         answer, _ = process.communicate(job)
         if process.returncode != 0:
             raise WorkerDied(worker, share, process.returncode)
-        outcome: list[Search | FfsrPlanError] = pickle.loads(answer)
+        outcome: list[Outcome] = pickle.loads(answer)
         return outcome
 
     try:
@@ -95,16 +105,20 @@ def _run(
     planner: Any,  # noqa: ANN401 - any planner class
     rngs: list[np.random.Generator],
     seconds: float,
-) -> list[Search | FfsrPlanError]:
+) -> list[Outcome]:
     """No colony knows what another one has proven: its outcome must not depend on that."""
     deadline = time.monotonic() + seconds
-    results: list[Search | FfsrPlanError] = []
+    outcomes = []
     for rng in rngs:
+        own, before = roadmap.forget(), roadmap.prover.queries
+        result: Search | FfsrPlanError
         try:
-            results.append(planner.search(roadmap.forget(), rng, Watch(None, deadline)))
+            result = planner.search(own, rng, Watch(None, deadline))
         except FfsrPlanError as error:
-            results.append(error)
-    return results
+            result = error
+        proofs, queries = own.proofs(), roadmap.prover.queries - before
+        outcomes.append(Outcome(result, proofs.edges_free, proofs.edges_refused, queries))
+    return outcomes
 
 
 def main() -> None:
