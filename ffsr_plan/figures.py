@@ -42,7 +42,7 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
     segments, strength = _trails(plan, view)
     if len(segments):
         trails = LineCollection(list(segments), array=strength, cmap="BuPu", zorder=1)
-        trails.set_clim(-0.4, 1.0)
+        trails.set_clim(-0.2, 1.0)
         trails.set_linewidth((0.5 + 1.5 * strength).tolist())
         axes.add_collection(trails)
     for s in np.linspace(0.0, 1.0, silhouettes):
@@ -94,10 +94,11 @@ def convergence_figure(plan: Plan) -> Figure:
     """Best F so far, best and mean F of each cycle, and the number of different paths."""
     history = plan.history
     cycles = np.arange(1, len(history.best) + 1)
-    figure, axes = _new_figure(7.0, 3.2)
+    figure, axes = _new_figure(8.0, 3.4)
     axes.plot(cycles, history.mean, color=_OBSTACLE, lw=1.2, label="mean of the cycle")
     axes.plot(cycles, history.iteration_best, color=_START, lw=1.0, label="best of the cycle")
     axes.step(cycles, history.best, color=_PATH, lw=1.8, where="post", label="best so far")
+    axes.axhline(plan.optimum, color="#2f8f4e", ls="--", lw=1.0, label="lattice optimum")
     axes.set_xlabel("cycle")
     axes.set_ylabel("F")
     other = axes.twinx()
@@ -106,7 +107,7 @@ def convergence_figure(plan: Plan) -> Figure:
     other.set_ylim(bottom=0)
     axes.plot([], [], ":", color="#3b4252", lw=1.0, label="different paths")
     figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside upper center", ncols=4, frameon=False
+        *axes.get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False
     )
     return figure
 

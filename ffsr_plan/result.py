@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ffsr_plan.attitude import to_angles
 from ffsr_plan.colony import History, Search, Trails, Watch
@@ -110,24 +110,26 @@ class Plan:
         q = self.motion.at(edge, scaled - edge)
         return q.reshape(*parameter.shape, self.problem.robot.model.nq)
 
-    def trail_segments(self) -> tuple[Array, Array]:
+    def trail_segments(self, most: int = 3000) -> tuple[Array, Array]:
         """Where the ants walked, faint trails first.
+
+        Args:
+            most: how many edges; the strongest.
 
         Returns:
             Ends (k, 2, 3) of the edges, base origin in the world [m], and strengths (k,) in [0, 1]:
-            the logarithm of all pheromone ever laid on the edge, so that early trails show too.
+            half for all the pheromone ever laid on the edge, half for the ants that walked it, on
+            logarithmic scales, so that early trails show too.
         """
         lattice, trails = LayeredLattice(self.problem), self.trails
         if not len(trails.layer):
             return np.zeros((0, 2, 3)), np.zeros(0)
-        along, across = lattice.nominal.positions, lattice.offsets
-        begin = along[trails.layer] + across[trails.tail]
-        end = along[trails.layer + 1] + across[trails.head]
-        laid = trails.laid / np.min(trails.laid, where=trails.laid > 0.0, initial=np.inf)
-        strength = np.log1p(laid)
-        strength /= max(float(strength.max()), 1e-12)
-        order = np.argsort(strength, kind="stable")
-        return np.stack([begin, end], axis=1)[order], strength[order]
+        strength = 0.5 * (_logarithmic(trails.laid) + _logarithmic(trails.ants))
+        order = np.argsort(strength, kind="stable")[-most:]
+        layer, tail, head = trails.layer[order], trails.tail[order], trails.head[order]
+        begin = lattice.nominal.positions[layer] + lattice.offsets[tail]
+        end = lattice.nominal.positions[layer + 1] + lattice.offsets[head]
+        return np.stack([begin, end], axis=1), strength[order]
 
     def verify(self, samples: int = 2000) -> Report:
         """Check the plan again, densely and by other code than the planner's; see `verify`.
@@ -171,3 +173,10 @@ class Plan:
         return first == to_dict(other) | {"seconds": 0.0}
 
     __hash__ = None  # type: ignore[assignment]  # equality is by content
+
+
+def _logarithmic(amount: NDArray[Any]) -> Array:
+    """Amounts >= 0 on a logarithmic scale from 0 to 1."""
+    amount = amount.astype(np.float64)
+    scaled = np.log1p(amount / np.min(amount, where=amount > 0.0, initial=np.inf))
+    return np.asarray(scaled / max(float(scaled.max()), 1e-12))

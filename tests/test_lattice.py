@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from builders import random_robot
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -94,3 +95,16 @@ def test_a_turn_on_the_spot_has_one_node_a_layer(robot):
     assert plan.length == pytest.approx(1.0)
     assert plan.verify(50).ok
     assert abs(plan.arrival_attitude[0]) > 0.1
+
+
+def test_a_continuous_joint_goes_the_shorter_way_round():
+    robot = random_robot(1, kinds=("continuous",), arms=1, depth=1)
+    (name,) = robot.joint_names
+    start = robot.configuration(joints={name: 3.0})
+    goal = robot.configuration((5.0, 0.0, 0.0), joints={name: -3.0})
+    turning = fp.Problem(robot, fp.Scene(), start, goal, lattice=fp.Lattice(4))
+    assert turning.joint_travel == pytest.approx([2 * np.pi - 6.0])
+    plan = fp.plan(turning)
+    assert plan.length == pytest.approx(np.hypot(5.0, 2 * np.pi - 6.0))
+    assert np.allclose(plan.configurations[-1][7:], goal[7:], atol=1e-12)
+    assert plan.verify(50).ok

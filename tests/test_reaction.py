@@ -28,6 +28,21 @@ def by_many_small_steps(robot, begin, end, steps):
     return rotation
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_halving_the_step_converges_at_sixth_order(seed):
+    robot = random_robot(seed, depth=3)
+    begin, end = path(robot, seed, spread=1.2)
+    exact = Reaction(robot, np.array([begin, end])).increments[0]
+    errors = []
+    for substeps in (4, 8, 16):
+        rough = object.__new__(Reaction)
+        rough._expand(robot, begin[None], (end - begin)[None], substeps)
+        errors.append(attitude.angle_between(rough.increments[0], exact))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert errors[0] < 1e-5
+    assert np.all((orders > 5.0) | (np.array(errors[1:]) < 1e-11))
+
+
 def path(robot, seed, corners=2, spread=1.5):
     return np.random.default_rng(seed).uniform(-spread, spread, (corners, robot.nd))
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colon
     from ffsr_plan.colony.max_min_cycle import State
 
 _LARGE = 100  # nodes a layer from which on pheromone lies on nodes, not on edges
+_TRAILS = 10_000  # edges whose trails are kept for pictures
 _BREATH = 16  # cycles between two looks at the clock
 
 
@@ -105,11 +106,7 @@ class MaxMinAntSystem:
             frozen(done[:, 2].copy()),
             frozen(done[:, 3].astype(np.int64)),
         )
-        layer, tail, head = np.nonzero(state.walked)
-        level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]
-        edges = (layer, tail, head)
-        walked, laid = state.walked[edges], state.laid[edges]
-        trails = Trails(layer, tail, head, walked, laid, level)
+        trails = _trails(state)
         return Search(frozen(state.best_path), history, trails, interrupted)
 
     def _run_until(
@@ -200,3 +197,15 @@ def _report(state: State, cycles: int) -> Cycle:
     np.add.at(counts, (np.arange(len(counts)), state.paths), 1)
     path = state.best_path.copy()
     return Cycle(number, cycles, best, iteration_best, mean, int(distinct), path, counts, state.tau)
+
+
+def _trails(state: State) -> Trails:
+    """The most walked edges, in the order of layers and nodes."""
+    used = np.flatnonzero(state.walked)
+    if len(used) > _TRAILS:
+        ants = state.walked.ravel()[used]
+        used = np.sort(used[np.argsort(-ants, kind="stable")[:_TRAILS]])
+    edges = np.unravel_index(used, state.walked.shape)
+    layer, tail, head = edges
+    level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]
+    return Trails(layer, tail, head, state.walked[edges], state.laid[edges], level)

@@ -63,7 +63,7 @@ class History(NamedTuple):
 
 
 class Trails(NamedTuple):
-    """The edges that ants walked, arrays of shape (edges,)."""
+    """The edges that ants walked, arrays of shape (edges,); only the most walked of very many."""
 
     layer: IntArray
     """Layer that the edge leaves."""
