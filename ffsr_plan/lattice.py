@@ -82,13 +82,13 @@ class LayeredLattice:
     @cached_property
     def steps(self) -> Array:
         """(n, n) length d_pq of the edges between two layers [m], Eq. 6: only offsets differ."""
-        return frozen(np.sqrt(self.problem.delta_d**2 + self.displacements**2))
+        across = self.distances * self.problem.position_weight
+        return frozen(np.sqrt(self.problem.delta_d**2 + across**2))
 
     @cached_property
-    def displacements(self) -> Array:
+    def distances(self) -> Array:
         """(n, n) distance between the offsets of two nodes [m]."""
-        apart = self.offsets[:, None] - self.offsets[None]
-        return frozen(np.linalg.norm(apart, axis=2) * self.problem.position_weight)
+        return frozen(np.linalg.norm(self.offsets[:, None] - self.offsets[None], axis=2))
 
     @cached_property
     def base_travel(self) -> Array:

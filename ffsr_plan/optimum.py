@@ -1,9 +1,10 @@
 """The exact lattice optimum: a shortest path over the layers, edges certified when it uses them.
 
 F is additive over nodes and edges on a lattice whose nodes have one configuration each. Unproven
-edges are taken as free; the shortest path is certified; if an edge is refused the search is taken
-up again behind it, until a path holds. Since assuming edges free can only shorten the path, the
-first one that holds is the optimum (lazy search).
+edges are taken as free, nodes not yet evaluated as clear as their neighbours allow; the shortest
+path is looked at, and where it turns out worse than thought the search is taken up again behind it,
+until a path holds. Since both assumptions can only shorten a path, the first one that holds is the
+optimum (lazy search).
 """
 
 from __future__ import annotations
@@ -56,12 +57,20 @@ def lattice_optimum(roadmap: Roadmap) -> IntArray:
     Raises:
         NoPath: there is none.
     """
+    node_costs = roadmap.optimistic_node_costs()
+
+    def objection(path: IntArray) -> int | None:
+        news = roadmap.learn(path)
+        if len(news):
+            node_costs[news] = roadmap.optimistic_node_costs(news)
+            return int(news[0]) - 1
+        if roadmap.prove_path(path):
+            return None
+        return first_refused(roadmap.status, path)
+
+    edge_costs = roadmap.edge_costs()[None]
     path = lazy_shortest_path(
-        roadmap.edge_costs()[None],
-        roadmap.node_costs(),
-        roadmap.status,
-        roadmap.lattice.origin,
-        roadmap.prove_path,
+        edge_costs, node_costs, roadmap.status, roadmap.lattice.origin, objection
     )
     if path is None:
         raise roadmap.no_path() or PlanningError("the lattice optimum was lost")
@@ -73,17 +82,18 @@ def lazy_shortest_path(
     node_costs: Array,
     status: States,
     origin: int,
-    prove: Callable[[IntArray], bool],
+    objection: Callable[[IntArray], int | None],
 ) -> IntArray | None:
-    """The shortest path over layers whose edges are proven when it uses them.
+    """The shortest path over layers whose nodes and edges are looked at when it uses them.
 
     Args:
         edge_costs: (m, n, n), or (1, n, n) where all layers are alike.
-        node_costs: (m + 1, n), infinite where a node may not be entered.
+        node_costs: (m + 1, n), infinite where a node may not be entered; optimistic at first.
         status: (m, n, n) what is known of each edge; refused ones are left out.
         origin: the node of layers 0 and m.
-        prove: certifies the edges of a path (m + 1,), notes refusals in `status`, and tells whether
-            all are free.
+        objection: looks at the nodes and edges of a path (m + 1,). Where one turns out worse than
+            thought it corrects `node_costs` or `status`, and returns the first layer whose outgoing
+            edges have to be gone through again; None if the path holds.
 
     Returns:
         (m + 1,) nodes, or None if there is no path.
@@ -103,7 +113,12 @@ def lazy_shortest_path(
         path[m] = origin
         for i in range(m, 0, -1):
             path[i - 1] = before[i, path[i]]
-        if prove(path):
+        again = objection(path)
+        if again is None:
             return path
-        refused = status[np.arange(m), path[:-1], path[1:]] == _REFUSED
-        first = int(np.argmax(refused))
+        first = again
+
+
+def first_refused(status: States, path: IntArray) -> int:
+    """The first layer on which a path leaves by a refused edge."""
+    return int(np.argmax(status[np.arange(len(status)), path[:-1], path[1:]] == _REFUSED))

@@ -74,6 +74,7 @@ def plan(
         found = planner.search(roadmap, rng, watch)
         proofs = roadmap.proofs()
     else:
+        roadmap.evaluate_all()  # as every worker does, so that all counts are alike
         nothing = roadmap.proofs()
         outcomes = run_colonies(roadmap, planner, rng.spawn(colonies), workers, seconds)
         found = _best(roadmap, outcomes)

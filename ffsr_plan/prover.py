@@ -15,7 +15,7 @@ import numpy as np
 from ffsr_plan.collision import obstacle_query, self_query
 from ffsr_plan.edges import ROUNDING, Verdict, certify, clearance_bound
 from ffsr_plan.errors import GoalInCollision, NoPath, StartInCollision
-from ffsr_plan.inputs import Array, frozen
+from ffsr_plan.inputs import Array, IntArray, frozen
 from ffsr_plan.motion import Motion
 from ffsr_plan.travel import swing
 
@@ -51,9 +51,9 @@ class Prover:
         """Coal queries so far, each over all pairs of one configuration."""
         return self._obstacles.count + self._self.count
 
-    def clearances(self, layer: int, offsets: Array) -> Array:
-        """(k,) clearances [m] on a layer at offsets (k, 3)."""
-        q = np.repeat(self._corners[layer][None], len(offsets), axis=0)
+    def clearances(self, layers: IntArray, offsets: Array) -> Array:
+        """(k,) clearances [m] on layers (k,) at offsets (k, 3)."""
+        q = self._corners[layers]
         q[:, :3] += offsets
         return self._obstacles.distances(q)
 

@@ -131,7 +131,7 @@ class _Descent:
             node_costs,
             status,
             0,
-            lambda path: self._prove(path, choices, offsets, clearances, status),
+            lambda path: self._objection(path, choices, offsets, clearances, status),
         )
         if path is None:
             return False
@@ -161,16 +161,15 @@ class _Descent:
             key = (int(i), choices[i, k].tobytes())
             if key not in self._known:
                 at = choices[i, k][None] @ self.unit
-                self._known[key] = float(self._prover.clearances(int(i), at)[0])
+                self._known[key] = float(self._prover.clearances(np.array([i]), at)[0])
                 self.nodes += 1
             found[i, k] = self._known[key]
         return found
 
-    def _prove(
+    def _objection(
         self, path: IntArray, choices: IntArray, offsets: Array, clearances: Array, status: States
-    ) -> bool:
-        """Certify the edges of a path; whether all are free. Refusals are noted in `status`."""
-        free = True
+    ) -> int | None:
+        """Certify the edges of a path; note refusals in `status`, return the first one's layer."""
         for i, (a, b) in enumerate(pairwise(path)):
             key = (i, choices[i, a].tobytes(), choices[i + 1, b].tobytes())
             verdict = self._verdicts.get(key)
@@ -179,7 +178,7 @@ class _Descent:
                 verdict = self._prover.certify(i, offsets[i, a], offsets[i + 1, b], ends)
                 self._verdicts[key] = verdict
             if not verdict.free:
-                free = False
                 status[i, a, b] = REFUSED
                 rule_out(status[i], offsets[i], offsets[i + 1], (int(a), int(b)), verdict)
-        return free
+        refused = status[np.arange(len(path) - 1), path[:-1], path[1:]] == REFUSED
+        return int(np.argmax(refused)) if refused.any() else None

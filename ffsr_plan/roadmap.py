@@ -1,4 +1,4 @@
-"""`Roadmap`: the lattice with its clearances, and its edges certified when they are asked for."""
+"""`Roadmap`: a lattice and what is known of its nodes and edges, found out when it is asked for."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from ffsr_plan.edges import ROUNDING, Verdict
 from ffsr_plan.errors import NoPath
 from ffsr_plan.inputs import Array, Flags, IntArray, States, frozen
 from ffsr_plan.lattice import LayeredLattice
+from ffsr_plan.node_clearances import NodeClearances
 from ffsr_plan.objective import nearness, objective, path_length
 from ffsr_plan.problem import Problem
 from ffsr_plan.prover import Prover
@@ -35,18 +36,16 @@ class Certificate(NamedTuple):
 
 
 class Roadmap:
-    """Nodes with exact clearances and lazily certified edges.
+    """Nodes and edges of a lattice, and what is known of them.
 
     Attributes:
         lattice: the lattice.
         prover: clearances and proofs for any offsets.
-        clearances: (m + 1, n) clearance of each node [m]; NaN where a layer lacks the node.
-        admissible: (m + 1, n) the nodes that touch nothing.
         status: (m, n, n) what is known of each edge: UNKNOWN, FREE or REFUSED.
     """
 
     def __init__(self, problem: Problem) -> None:
-        """Evaluate all nodes.
+        """Set up the lattice; nodes are evaluated when they are first needed.
 
         Raises:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
@@ -57,18 +56,20 @@ class Roadmap:
         self.prover = Prover(self.lattice.nominal)
         self.prover.check_ends()
         self.prover.check_self_collision()
-        before = self.prover.queries
-        m, n, origin = self.lattice.divisions, self.lattice.size, self.lattice.origin
-        clearances = np.full((m + 1, n), np.nan)
-        for i in range(m + 1):
-            nodes = slice(origin, origin + 1) if i in (0, m) else slice(None)
-            clearances[i, nodes] = self.prover.clearances(i, self.lattice.offsets[nodes])
-        self._node_queries = self.prover.queries - before
-        self.clearances = frozen(clearances)
-        self.admissible: Flags = clearances > 0.0
-        self.admissible.setflags(write=False)
+        self._nodes = NodeClearances(self.lattice, self.prover)
+        m, n = self.lattice.divisions, self.lattice.size
         self.status: States = np.zeros((m, n, n), dtype=np.int8)
         self._verdicts: dict[tuple[int, int, int], Verdict] = {}
+
+    @property
+    def clearances(self) -> Array:
+        """(m + 1, n) clearance of every node [m]; NaN where a layer lacks the node."""
+        return self._nodes.exact()
+
+    @property
+    def admissible(self) -> Flags:
+        """(m + 1, n) the nodes that touch nothing."""
+        return self._nodes.exact() > 0.0
 
     def forget(self) -> Roadmap:
         """The same nodes with nothing known of the edges: a clean start for another colony."""
@@ -81,7 +82,7 @@ class Roadmap:
         """The verdict on the edge from node `tail` of `layer` to node `head` of the next one."""
         key = (layer, tail, head)
         if key not in self._verdicts:
-            ends = (float(self.clearances[layer, tail]), float(self.clearances[layer + 1, head]))
+            ends = (self._clearance(layer, tail), self._clearance(layer + 1, head))
             offsets = self.lattice.offsets
             verdict = self.prover.certify(layer, offsets[tail], offsets[head], ends)
             self._verdicts[key] = verdict
@@ -104,10 +105,9 @@ class Roadmap:
     def prove_obvious(self) -> None:
         """Mark the edges that the clearances at their ends prove free without a query."""
         travel = self.lattice.base_travel + (self.prover.swing + ROUNDING)
+        positive = np.where(self.admissible, self.clearances, np.nan)
         for i in range(self.lattice.divisions):
-            tails = np.where(self.admissible[i], self.clearances[i], np.nan)
-            heads = np.where(self.admissible[i + 1], self.clearances[i + 1], np.nan)
-            self.status[i][tails[:, None] + heads > travel] = FREE
+            self.status[i][positive[i][:, None] + positive[i + 1] > travel] = FREE
 
     def path_length(self, path: IntArray) -> float:
         """L of Eq. 6 [m] of a path, node indices (m + 1,)."""
@@ -115,7 +115,8 @@ class Roadmap:
 
     def path_clearances(self, path: IntArray) -> Array:
         """(m + 1,) clearances at the nodes of a path [m]."""
-        return self.clearances[np.arange(len(path)), path]
+        self._nodes.learn(path)
+        return self._nodes.bounds[np.arange(len(path)), path]
 
     def objective(self, path: IntArray) -> float:
         """F of Eq. 8 of a path, node indices (m + 1,), edges taken as free."""
@@ -127,9 +128,24 @@ class Roadmap:
 
     def node_costs(self) -> Array:
         """(m + 1, n) share of a node in F: delta / d_imin; infinite where it may not be entered."""
-        costs = np.where(self.admissible, nearness(self.problem, self.clearances), np.inf)
-        costs[[0, -1], self.lattice.origin] = 0.0  # layers 0 and m do not count in Eq. 8
-        return frozen(costs)
+        self._nodes.exact()
+        return frozen(self.optimistic_node_costs())
+
+    def optimistic_node_costs(self, layers: slice | IntArray = slice(None)) -> Array:
+        """(k, n) lower bounds of `node_costs` from the nodes evaluated so far."""
+        bounds = self._nodes.bounds[layers]
+        costs = np.where(bounds > 0.0, nearness(self.problem, bounds), np.inf)
+        if isinstance(layers, slice):
+            costs[[0, -1], self.lattice.origin] = 0.0  # layers 0 and m do not count in Eq. 8
+        return costs
+
+    def evaluate_all(self) -> None:
+        """Evaluate every node now."""
+        self._nodes.exact()
+
+    def learn(self, path: IntArray) -> IntArray:
+        """Evaluate the nodes of a path (m + 1,); the inner layers of which more is known now."""
+        return self._nodes.learn(path)
 
     def proofs(self) -> Certificate:
         """What has been proven so far; no clearance of any path yet."""
@@ -137,8 +153,8 @@ class Roadmap:
         return Certificate(
             edges_free=free,
             edges_refused=len(self._verdicts) - free,
-            node_queries=self._node_queries,
-            edge_queries=self.prover.queries - self._node_queries,
+            node_queries=self._nodes.queries,
+            edge_queries=self.prover.queries - self._nodes.queries,
             least_clearance=0.0,
         )
 
@@ -155,6 +171,13 @@ class Roadmap:
                 return NoPath(layer + 1, self._closing(layer, reached), m)
             reached = onwards
         return None
+
+    def _clearance(self, layer: int, node: int) -> float:
+        if not self._nodes.known[layer, node]:
+            path = np.full(self.lattice.divisions + 1, self.lattice.origin)
+            path[layer] = node
+            self._nodes.learn(path)
+        return float(self._nodes.bounds[layer, node])
 
     def _closing(self, layer: int, reached: list[int]) -> tuple[int | str, ...]:
         """What closes all edges from the nodes `reached` of a layer to the next one."""

@@ -99,6 +99,47 @@ def test_what_is_obviously_free_is_free(seed):
         assert fresh.certify(*map(int, edge)).free
 
 
+@pytest.mark.parametrize("delta", [0.0, 0.1, 2.0, 6.0])
+def test_evaluating_only_the_nodes_of_candidate_paths_gives_the_same_optimum(delta):
+    given_ = fp.load_scenario("fig2a")
+    rng = np.random.default_rng(11)
+    for _ in range(5):
+        scene = random_scene(rng, 6, (1.8, -3, 0), (8.2, 3, 0), (0.15, 0.5))
+        p = fp.Problem(given_.robot, scene, given_.start, given_.goal, delta=delta,
+                       lattice=fp.Lattice(40, fp.Axis(20, 0.15)))  # fmt: skip
+        lazy, eager = Roadmap(p), Roadmap(p)
+        assert eager.proofs().node_queries == 2
+        assert np.isfinite(eager.clearances[1:-1]).all()
+        assert eager.proofs().node_queries == 39 * 41 + 2
+        try:
+            best = eager.objective(lattice_optimum(eager))
+        except fp.NoPath:
+            with pytest.raises(fp.NoPath):
+                lattice_optimum(lazy)
+            continue
+        assert lazy.objective(lattice_optimum(lazy)) == pytest.approx(best, rel=1e-12)
+        assert lazy.proofs().node_queries < 0.6 * eager.proofs().node_queries
+
+
+@given(seeds)
+@settings(max_examples=25)
+def test_bounds_from_neighbours_are_never_below_a_clearance(seed):
+    roadmap = roadmap_or_none(problem(seed, "planar_dual_arm", normal=True, obstacles=4))
+    if roadmap is None:
+        return
+    rng = np.random.default_rng(seed)
+    m, n = roadmap.lattice.divisions, roadmap.lattice.size
+    for _ in range(3):
+        path = rng.integers(0, n, m + 1)
+        path[[0, -1]] = roadmap.lattice.origin
+        news = roadmap.learn(path)
+        assert np.all((news >= 1) & (news < m))
+        assert len(roadmap.learn(path)) == 0
+    bounds = roadmap._nodes.bounds.copy()
+    exact = roadmap.clearances
+    assert np.all(bounds[1:-1] >= exact[1:-1] - 1e-9)
+
+
 def test_equally_good_paths_give_the_same_answer_every_time(point):
     goal = point.configuration((6.0, 0.0, 0.0))
     scene = fp.Scene([[3.0, 0.0, 0.0]], [0.5])  # the ways round are mirror images

@@ -108,6 +108,7 @@ def _run(
 ) -> list[Outcome]:
     """No colony knows what another one has proven: its outcome must not depend on that."""
     deadline = time.monotonic() + seconds
+    roadmap.evaluate_all()
     outcomes = []
     for rng in rngs:
         own, before = roadmap.forget(), roadmap.prover.queries
