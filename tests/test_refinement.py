@@ -38,11 +38,12 @@ def test_refinement_helps_a_path_of_any_planner():
 
 
 def test_refinement_stays_within_the_window_and_in_sixteenths():
-    problem = fp.load_scenario("fig2b")
-    plan = fp.plan(problem, fp.LatticeOptimum())
+    """In metres, delta = 6 drives the path to the rim of the window."""
+    plan = fp.plan(random_problem(1, 6.0), fp.LatticeOptimum())
     lateral = plan.configurations[:, 1]
-    assert np.abs(lateral).max() <= 40 * 0.075 + 1e-12
-    assert np.allclose(lateral / (0.075 / 16), np.rint(lateral / (0.075 / 16)), atol=1e-9)
+    assert np.abs(plan.nodes).max() == 20
+    assert np.abs(lateral).max() == pytest.approx(20 * 0.15)
+    assert np.allclose(lateral / (0.15 / 16), np.rint(lateral / (0.15 / 16)), atol=1e-9)
     assert lateral[0] == lateral[-1] == 0.0
 
 
