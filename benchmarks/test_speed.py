@@ -3,6 +3,8 @@
 `pytest benchmarks` runs them; the ratio stands in each benchmark's extra_info.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from reference import Reference, record
@@ -17,6 +19,25 @@ from ffsr_plan.roadmap import Roadmap
 @pytest.fixture(scope="module")
 def reference(problem):
     return Reference(problem)
+
+
+@pytest.fixture(scope="module")
+def spatial(problem):
+    """The same task on 41 layers of 21 x 21 nodes, lateral and normal."""
+    return replace(problem, lattice=fp.Lattice(40, fp.Axis(10, 0.3), fp.Axis(10, 0.3)))
+
+
+@pytest.fixture(scope="module")
+def spatial_reference(spatial):
+    return Reference(spatial)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled(problem):
+    """All kernels, so that no benchmark times their compilation."""
+    few = replace(problem, lattice=fp.Lattice(8, fp.Axis(8, 0.3)))
+    for planner in (fp.AntSystem(cycles=2), fp.MaxMinAntSystem(cycles=2), fp.LatticeOptimum()):
+        fp.plan(few, planner)
 
 
 def test_reference_compute_distances(benchmark, reference):
@@ -46,7 +67,7 @@ def test_reaction_of_the_nominal_joint_path(benchmark, problem, reference):
 
 
 def test_roadmap_with_all_node_clearances(benchmark, problem, reference):
-    benchmark(lambda: Roadmap(problem))
+    benchmark(lambda: Roadmap(problem).clearances)
     record(benchmark, reference)
 
 
@@ -86,3 +107,44 @@ def test_plan_with_the_ant_system(benchmark, problem, reference):
     benchmark.extra_info["cycles"] = len(plan.history.best)
     benchmark.extra_info["objective"] = plan.objective
     record(benchmark, reference)
+
+
+def test_lattice_optimum_build_included(benchmark, problem, reference):
+    benchmark(lambda: search_anew(problem, fp.LatticeOptimum()))
+    record(benchmark, reference)
+
+
+def test_max_min_ant_system_build_included(benchmark, problem, reference):
+    """30 ants x 242 cycles."""
+    benchmark.pedantic(lambda: search_anew(problem, fp.MaxMinAntSystem()), rounds=10)
+    record(benchmark, reference)
+
+
+def test_plan_with_the_default_planner_and_refinement(benchmark, problem, reference):
+    plan = benchmark.pedantic(lambda: fp.plan(problem, refine=True), rounds=10)
+    benchmark.extra_info["objective"] = plan.objective
+    record(benchmark, reference)
+
+
+def test_plan_with_the_lattice_optimum(benchmark, problem, reference):
+    """Not refined."""
+    plan = benchmark(lambda: fp.plan(problem, fp.LatticeOptimum(), refine=False))
+    benchmark.extra_info["objective"] = plan.objective
+    record(benchmark, reference)
+
+
+def test_lattice_optimum_on_21_by_21_nodes(benchmark, spatial, spatial_reference):
+    """Build included."""
+    benchmark.pedantic(lambda: search_anew(spatial, fp.LatticeOptimum()), rounds=5)
+    record(benchmark, spatial_reference)
+
+
+def test_max_min_ant_system_on_21_by_21_nodes(benchmark, spatial, spatial_reference):
+    """Build included, 30 ants x 242 cycles."""
+    benchmark.pedantic(lambda: search_anew(spatial, fp.MaxMinAntSystem()), rounds=5)
+    record(benchmark, spatial_reference)
+
+
+def search_anew(problem, planner):
+    """Build the roadmap and search it."""
+    return planner.search(Roadmap(problem), np.random.default_rng(0))

@@ -24,7 +24,7 @@ class Axis:
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         set_(self, "half_count", whole_number("half_count", self.half_count, at_least=1))
-        set_(self, "spacing", number("spacing", self.spacing, above=0.0))
+        set_(self, "spacing", number("spacing", self.spacing, above=0.0, at_most=1e6))
 
 
 @dataclass(frozen=True)

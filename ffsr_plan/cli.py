@@ -1,10 +1,12 @@
 """The command line: `ffsr-plan demo | plan | verify | robots`.
 
-Exit status: 0 done, 1 no plan or a plan that does not verify, 2 bad input.
+Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
+plan that does not verify, 2 bad input, 130 interrupted without a plan.
 """
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple, TypeVar
 import typer
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from ffsr_plan.errors import FfsrPlanError, InvalidInput, PlanningError
 
@@ -64,7 +67,8 @@ def plan(
     colonies: Annotated[int, typer.Option(help="Independent colonies; the best counts.")] = 1,
     workers: Annotated[int, typer.Option(help="Processes for them.")] = 1,
     time_limit: Annotated[
-        float | None, typer.Option(help="Stop searching after so many seconds.")
+        float | None,
+        typer.Option(help="Stop searching after so many seconds; refinement comes on top."),
     ] = None,
     out: Out = None,
     force: Force = False,
@@ -200,8 +204,9 @@ def _write_results(found: Plan, title: str, target: Path) -> None:
 
 def _prepared(target: Path, force: bool) -> Path:
     """Refuse before planning, not after, to overwrite results."""
-    if target.exists() and not target.is_dir():
-        raise InvalidInput("--out", str(target), "a directory")
+    existing = next(p for p in (target, *target.absolute().parents) if p.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK):
+        raise InvalidInput("--out", str(target), "a directory that can be written")
     present = [name for name in RESULTS if (target / name).exists()]
     if present and not force:
         raise InvalidInput(
@@ -224,7 +229,8 @@ def _plan_table(title: str, found: Plan, report: Report | None) -> Table:
 
     clearances, proof = found.clearances, found.certificate
     angles = np.degrees(found.arrival_attitude)
-    table = Table(title=title or None, show_header=False, title_justify="left")
+    heading = Text(title) if title else None  # not markup: titles may hold brackets
+    table = Table(title=heading, show_header=False, title_justify="left")
     table.add_row("length L", f"{found.length:.4f} m")
     table.add_row("objective F", f"{found.objective:.4f}")
     table.add_row(
@@ -262,7 +268,7 @@ def _report_table(report: Report) -> Table:
 
 
 def _report_rows(report: Report) -> Iterator[tuple[str, str]]:
-    yield "verified", "yes" if report.ok else "NO: " + "; ".join(report.problems)
+    yield "verified", "yes" if report.ok else "NO, see below"
     yield "  samples", f"{report.samples}, at most {1e3 * report.largest_step:.2f} mm apart"
     yield "  least clearance", f"{report.least_clearance:.6f} m"
     yield "  least link-to-link", f"{report.least_self_separation:.6f} m"
@@ -277,3 +283,6 @@ def _errors_on_stderr() -> Iterator[None]:
     except FfsrPlanError as error:
         err_console.print("ffsr-plan: ", error, sep="", style="red", markup=False)
         raise typer.Exit(1 if isinstance(error, PlanningError) else 2) from None
+    except KeyboardInterrupt:
+        err_console.print("ffsr-plan: interrupted", style="red")
+        raise typer.Exit(130) from None

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from ffsr_plan.errors import InvalidInput
 from ffsr_plan.inputs import Array
 from ffsr_plan.robot import SpaceRobot
 from ffsr_plan.scene import Scene
@@ -108,4 +109,8 @@ def clearance(robot: SpaceRobot, scene: Scene, q: ArrayLike) -> float:
     Negative in penetration, infinite in an empty scene. For many configurations of one scene, use
     `obstacle_query(robot, scene).distances(...)`, which sets the scene up once.
     """
+    if not isinstance(robot, SpaceRobot):
+        raise InvalidInput("robot", robot, "a SpaceRobot")
+    if not isinstance(scene, Scene):
+        raise InvalidInput("scene", scene, "a Scene")
     return obstacle_query(robot, scene).distance(robot.check_configuration("q", q))

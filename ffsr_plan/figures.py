@@ -45,6 +45,7 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
         trails.set_clim(-0.2, 1.0)
         trails.set_linewidth((0.5 + 1.5 * strength).tolist())
         axes.add_collection(trails)
+        axes.plot([], [], color="#7a5fa8", lw=1.2, label="ants' trails, dark where most was laid")
     for s in np.linspace(0.0, 1.0, silhouettes):
         colour = _START if s == 0.0 else _GOAL if s == 1.0 else "#3b4252"
         ends = s in (0.0, 1.0)
@@ -58,7 +59,6 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
         axes.add_collection(outline)
     track = plan.at(np.linspace(0.0, 1.0, 401))[:, :3] @ view.T
     axes.plot(*track.T, color=_PATH, lw=1.8, zorder=6, label="base origin")
-    axes.plot([], [], color="#7a5fa8", lw=1.2, label="ants' trails, dark where most was laid")
     axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
     axes.set_aspect("equal")
     axes.autoscale_view()
@@ -94,7 +94,7 @@ def convergence_figure(plan: Plan) -> Figure:
     """Best F so far, best and mean F of each cycle, and the number of different paths."""
     history = plan.history
     cycles = np.arange(1, len(history.best) + 1)
-    figure, axes = _new_figure(8.0, 3.4)
+    figure, axes = _new_figure(8.0, 3.8)
     axes.plot(cycles, history.mean, color=_OBSTACLE, lw=1.2, label="mean of the cycle")
     axes.plot(cycles, history.iteration_best, color=_START, lw=1.0, label="best of the cycle")
     axes.step(cycles, history.best, color=_PATH, lw=1.8, where="post", label="best so far")
@@ -107,8 +107,11 @@ def convergence_figure(plan: Plan) -> Figure:
     other.set_ylim(bottom=0)
     axes.plot([], [], ":", color="#3b4252", lw=1.0, label="different paths")
     figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside upper center", ncols=5, frameon=False
+        *axes.get_legend_handles_labels(), loc="outside upper center", ncols=3, frameon=False
     )
+    if len(cycles) == 1:  # an exact planner has no cycles to converge over
+        axes.plot(cycles, history.best, "o", color=_PATH)
+        axes.set_xticks([1])
     return figure
 
 

@@ -17,6 +17,7 @@ Flags = NDArray[np.bool_]
 States = NDArray[np.int8]
 
 
+_HUGE = 1e9  # metres or radians; beyond that distances lose their millimetres
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 
 
@@ -29,7 +30,7 @@ def frozen(array: AnyArray) -> AnyArray:
 def finite_array(what: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     """A read-only float copy of `value`; -1 in `shape` stands for any length."""
     wanted = "x".join("N" if n < 0 else str(n) for n in shape)
-    allowed = f"finite numbers of shape ({wanted})"
+    allowed = f"finite numbers of at most {_HUGE:g}, of shape ({wanted})"
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
@@ -41,7 +42,7 @@ def finite_array(what: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     )
     if not fits:
         raise InvalidInput(f"{what} (shape {array.shape})", value, allowed)
-    if not np.all(np.isfinite(array)):
+    if not np.all(np.abs(array) <= _HUGE):  # NaN fails too
         raise InvalidInput(what, value, allowed)
     return frozen(array)
 
@@ -53,30 +54,40 @@ def number(
     above: float = -np.inf,
     below: float = np.inf,
     at_least: float = -np.inf,
+    at_most: float = np.inf,
 ) -> float:
-    """A finite float strictly inside (above, below) and not under `at_least`."""
+    """A finite float strictly inside (above, below) and in [at_least, at_most]."""
     bounds = [
         f"greater than {above:g}" if above > -np.inf else "",
         f"at least {at_least:g}" if at_least > -np.inf else "",
         f"less than {below:g}" if below < np.inf else "",
+        f"at most {at_most:g}" if at_most < np.inf else "",
     ]
     allowed = " and ".join(["a finite number", *filter(None, bounds)])
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise InvalidInput(what, value, allowed)
     result = float(value)
-    if not (np.isfinite(result) and above < result < below and result >= at_least):
+    if not (np.isfinite(result) and above < result < below and at_least <= result <= at_most):
         raise InvalidInput(what, value, allowed)
     return result
 
 
-def whole_number(what: str, value: object, *, at_least: int) -> int:
-    """An int not under `at_least`."""
+def whole_number(what: str, value: object, *, at_least: int, at_most: int | None = None) -> int:
+    """An int in [at_least, at_most]."""
     allowed = f"a whole number of at least {at_least}"
+    allowed += "" if at_most is None else f" and at most {at_most}"
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Integral):
         raise InvalidInput(what, value, allowed)
-    if int(value) < at_least:
+    if int(value) < at_least or (at_most is not None and int(value) > at_most):
         raise InvalidInput(what, value, allowed)
     return int(value)
+
+
+def truth(what: str, value: object) -> bool:
+    """True or False, and nothing that merely counts as one."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InvalidInput(what, value, "True or False")
+    return bool(value)
 
 
 def one_of(what: str, value: object, names: Sequence[str]) -> str:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 
 import numpy as np
 
+from ffsr_plan.errors import InvalidInput
 from ffsr_plan.inputs import Array, IntArray, frozen
 from ffsr_plan.motion import Motion
 from ffsr_plan.problem import Problem
+
+MOST_EDGES = 50_000_000  # some 60 bytes each while a colony runs
 
 
 def path_frame(travel: Array) -> Array:
@@ -46,6 +50,13 @@ class LayeredLattice:
         self.problem = problem
         lattice = problem.lattice
         axes = [getattr(lattice, name) for name in lattice.axes]
+        nodes = math.prod(2 * a.half_count + 1 for a in axes)
+        if lattice.divisions * nodes**2 > MOST_EDGES:
+            raise InvalidInput(
+                "lattice",
+                f"{nodes} nodes a layer and {lattice.divisions} divisions",
+                f"divisions x nodes^2 of at most {MOST_EDGES:.0e}, for the memory's sake",
+            )
         counts = [np.arange(-a.half_count, a.half_count + 1) for a in axes]
         grids = np.meshgrid(*counts, indexing="ij")
         self.indices: IntArray = (

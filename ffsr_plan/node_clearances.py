@@ -30,9 +30,15 @@ class NodeClearances:
         self.known: Flags = np.zeros((m + 1, n), dtype=bool)
         ends = np.array([0, m])
         self.bounds[ends], self.known[ends] = -np.inf, True
-        self.bounds[ends, origin] = prover.clearances(ends, np.zeros((2, 3)))
-        self.queries = 2
+        self.queries = 0
+        self.bounds[ends, origin] = self._ask(ends, np.zeros((2, 3)))
         self._exact: Array | None = None
+
+    def _ask(self, layers: IntArray, offsets: Array) -> Array:
+        before = self._prover.queries
+        found = self._prover.clearances(layers, offsets)
+        self.queries += self._prover.queries - before  # none in an empty scene
+        return found
 
     def learn(self, path: IntArray) -> IntArray:
         """Evaluate the nodes of a path (m + 1,); the layers about which something new is known."""
@@ -40,8 +46,7 @@ class NodeClearances:
         if not len(layers):
             return layers
         nodes = path[layers]
-        found = self._prover.clearances(layers, self._lattice.offsets[nodes])
-        self.queries += len(layers)
+        found = self._ask(layers, self._lattice.offsets[nodes])
         reach = found[:, None] + self._lattice.distances[nodes]
         at = self.bounds[layers]
         self.bounds[layers] = np.where(self.known[layers], at, np.minimum(at, reach))
@@ -54,8 +59,7 @@ class NodeClearances:
             for i in range(1, self._lattice.divisions):
                 missing = np.flatnonzero(~self.known[i])
                 layers = np.full(len(missing), i)
-                found = self._prover.clearances(layers, self._lattice.offsets[missing])
+                found = self._ask(layers, self._lattice.offsets[missing])
                 self.bounds[i, missing], self.known[i, missing] = found, True
-                self.queries += len(missing)
             self._exact = frozen(np.where(np.isneginf(self.bounds), np.nan, self.bounds))
         return self._exact

@@ -44,10 +44,9 @@ class LatticeOptimum:
         """
         path = lattice_optimum(roadmap)
         best = np.array([roadmap.objective(path)])
-        layers = np.arange(len(path) - 1)
-        nothing = np.zeros(len(layers))
+        nowhere, nothing = np.zeros(0, dtype=np.int64), np.zeros(0)
         history = History(best, best, best, np.ones(1, dtype=np.int64))
-        trails = Trails(layers, path[:-1], path[1:], np.ones_like(layers), nothing, nothing)
+        trails = Trails(nowhere, nowhere, nowhere, nowhere, nothing, nothing)  # no ant walked
         return Search(frozen(path), history, trails)
 
 

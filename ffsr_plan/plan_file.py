@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ffsr_plan.axes import Axis, Lattice
 from ffsr_plan.colony import History, Trails
 from ffsr_plan.errors import FfsrPlanError, InvalidInput
-from ffsr_plan.inputs import frozen
+from ffsr_plan.inputs import frozen, number
 from ffsr_plan.planner import PLANNERS
 from ffsr_plan.problem import Problem
 from ffsr_plan.result import Plan
@@ -109,8 +109,15 @@ def write(plan: Plan, path: Path) -> None:
     """Write `path`; an unfinished file never takes its place."""
     data = to_dict(plan)
     partial = path.with_name(path.name + ".part")
-    partial.write_text(json.dumps({"sha256": _digest(data), **data}, allow_nan=False, indent=1))
-    partial.replace(path)
+    text = json.dumps({"sha256": _digest(data), **data}, allow_nan=False, indent=1)
+    try:
+        partial.write_text(text, encoding="utf-8")
+        partial.replace(path)
+    except OSError as error:
+        partial.unlink(missing_ok=True)
+        raise InvalidInput(
+            "plan file", str(path), f"a file that can be written ({error})"
+        ) from None
 
 
 def read(path: Path) -> Plan:
@@ -124,22 +131,45 @@ def read(path: Path) -> Plan:
         data = json.loads(text)
     except json.JSONDecodeError as error:
         raise InvalidInput(
-            what, f"broken JSON at line {error.lineno}", "a whole plan file; this one is cut short"
+            what, f"broken JSON at line {error.lineno}", "a whole plan file, not one cut short"
         ) from None
+    except (RecursionError, ValueError) as error:
+        raise InvalidInput(what, str(error), "a plan file") from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         found = data.get("format") if isinstance(data, dict) else type(data).__name__
         raise InvalidInput(what, found, f"format '{FORMAT}'")
-    digest = data.pop("sha256", None)
-    if digest != _digest(data):
+    try:
+        unchanged = data.pop("sha256", None) == _digest(data)
+    except ValueError:  # not a number, which no plan file holds
+        unchanged = False
+    if not unchanged:
         raise InvalidInput(
             what, "contents that do not match their digest", "an unchanged plan file"
         )
     try:
-        return from_dict(data)
-    except (KeyError, TypeError, ValueError) as error:
+        plan = from_dict(data)
+        _check_shapes(plan)
+        return plan
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         if isinstance(error, FfsrPlanError):
             raise
         raise InvalidInput(what, repr(error), "every field of a plan file") from None
+
+
+def _check_shapes(plan: Plan) -> None:
+    """Raise `InvalidInput` where the arrays of a plan do not fit its problem."""
+    corners, nq = plan.problem.lattice.divisions + 1, plan.problem.robot.model.nq
+    axes = len(plan.problem.lattice.axes)
+    shapes = {
+        "configurations": (plan.configurations.shape, (corners, nq)),
+        "clearances": (plan.clearances.shape, (corners,)),
+        "nodes": (plan.nodes.shape, (corners, axes) if axes > 1 else (corners,)),
+    }
+    for name, (shape, wanted) in shapes.items():
+        if shape != wanted:
+            raise InvalidInput(f"{name} of the plan", shape, f"the shape {wanted}")
+    for name in ("length", "objective", "lattice_objective", "optimum", "seconds"):
+        number(f"{name} of the plan", getattr(plan, name), at_least=0.0)
 
 
 def _digest(data: dict[str, Any]) -> str:

@@ -12,7 +12,7 @@ from ffsr_plan.colony import AntSystem, MaxMinAntSystem, Search, Watch
 from ffsr_plan.colony.parallel import Outcome, run_colonies
 from ffsr_plan.colony.records import OnCycle
 from ffsr_plan.errors import FfsrPlanError, InvalidInput
-from ffsr_plan.inputs import frozen, number, whole_number
+from ffsr_plan.inputs import frozen, number, truth, whole_number
 from ffsr_plan.optimum import LatticeOptimum, lattice_optimum
 from ffsr_plan.problem import Problem
 from ffsr_plan.refinement import refined
@@ -49,7 +49,8 @@ def plan(
         refine: whether to move the path off the lattice in the end, to where F is lower.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that they are spread over.
-        time_limit: [s] for the search, from its beginning.
+        time_limit: [s] for the search, from its beginning; setting up the lattice before it, and
+            the optimum and the refinement after it, are not cut short.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.
 
     Raises:
@@ -62,6 +63,11 @@ def plan(
     planner = MaxMinAntSystem() if planner is None else planner
     if not isinstance(planner, tuple(PLANNERS.values())):
         raise InvalidInput("planner", planner, f"one of {', '.join(PLANNERS)}, as an object")
+    if not isinstance(problem, Problem):
+        raise InvalidInput("problem", problem, "a Problem (that of a scenario is scenario.problem)")
+    refine = truth("refine", refine)
+    if on_cycle is not None and not callable(on_cycle):
+        raise InvalidInput("on_cycle", on_cycle, "a function, or None")
     colonies = whole_number("colonies", colonies, at_least=1)
     workers = whole_number("workers", workers, at_least=1)
     seconds = math.inf if time_limit is None else number("time_limit", time_limit, above=0.0)
@@ -126,4 +132,5 @@ def _best(roadmap: Roadmap, outcomes: list[Outcome]) -> Search:
     found = [o.result for o in outcomes if isinstance(o.result, Search)]
     if not found:
         raise next(o.result for o in outcomes if isinstance(o.result, FfsrPlanError))
-    return min(found, key=lambda search: roadmap.objective(search.path))
+    best = min(found, key=lambda search: roadmap.objective(search.path))
+    return best._replace(interrupted=any(search.interrupted for search in found))

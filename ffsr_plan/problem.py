@@ -77,7 +77,7 @@ class Problem:
         kinds: dict[str, tuple[object, type]] = {
             "robot": (robot, SpaceRobot),
             "scene": (scene, Scene),
-            "lattice": (lattice or Lattice(), Lattice),
+            "lattice": (Lattice() if lattice is None else lattice, Lattice),
         }
         for name, (given, kind) in kinds.items():
             if not isinstance(given, kind):

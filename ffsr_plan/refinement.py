@@ -161,8 +161,9 @@ class _Descent:
             key = (int(i), choices[i, k].tobytes())
             if key not in self._known:
                 at = choices[i, k][None] @ self.unit
+                before = self._prover.queries
                 self._known[key] = float(self._prover.clearances(np.array([i]), at)[0])
-                self.nodes += 1
+                self.nodes += self._prover.queries - before
             found[i, k] = self._known[key]
         return found
 

@@ -77,7 +77,8 @@ class Plan:
     @property
     def gap(self) -> float:
         """(lattice_objective - optimum) / optimum: how far the search stayed above the optimum."""
-        return (self.lattice_objective - self.optimum) / self.optimum
+        above = self.lattice_objective - self.optimum
+        return above / self.optimum if above > 0.0 else 0.0
 
     @cached_property
     def motion(self) -> Motion:
@@ -162,7 +163,11 @@ class Plan:
         """Write one self-contained page that shows the motion; it needs no network."""
         from ffsr_plan.viewer import page
 
-        Path(path).write_text(page(self, title), encoding="utf-8")
+        text = page(self, title)
+        try:
+            Path(path).write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise InvalidInput("page", str(path), f"a file that can be written ({error})") from None
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):

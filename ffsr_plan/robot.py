@@ -102,6 +102,8 @@ class SpaceRobot:
             InvalidInput: unknown joint, not finite, wrong shape, or outside the joint's limits.
         """
         values = np.zeros(self.nd)
+        if joints is not None and not isinstance(joints, Mapping):
+            raise InvalidInput("joints", joints, "a mapping from joint names to values")
         for name, value in (joints or {}).items():
             if name not in self.joint_names:
                 raise unknown_name("joints", name, self.joint_names)
@@ -200,6 +202,8 @@ def load_robot(source: str | Path, package_dirs: Sequence[str | Path] = ()) -> S
     Raises:
         InvalidInput: no such robot or file, or a URDF that cannot be used, with the link or joint.
     """
+    if not isinstance(source, (str, Path)):
+        raise InvalidInput("robot", source, "a name or a path")
     path = bundled.find("urdf", str(source), ".urdf")
     if path is None:
         path = Path(source)

@@ -150,13 +150,15 @@ def read_scenario(source: str | Path) -> Scenario:
         InvalidInput: no such file, not TOML, an unknown key (the nearest one is suggested), a wrong
             type or a value that is not allowed; the message names file and field.
     """
+    if not isinstance(source, (str, Path)):
+        raise InvalidInput("scenario", source, "a name or a path")
     path = bundled.find("scenarios", str(source), ".toml") or Path(source)
     what = f"scenario '{source}'"
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
         raise InvalidInput(what, str(error), "a TOML file") from None
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         known = ", ".join(bundled.names("scenarios", ".toml"))
         raise InvalidInput(
             what, type(error).__name__, f"a readable file, or one of: {known}"
@@ -209,7 +211,8 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
     settings = table.model_dump(exclude={"name", "seed", "refine"}, exclude_none=True)
     for key in settings:
         if key not in kind.__dataclass_fields__:
-            raise unknown_name(f"planner ({kind.name})", key, kind.__dataclass_fields__)
+            known = [name for name in kind.__dataclass_fields__ if name != "name"]
+            raise unknown_name(f"planner ({kind.name})", key, known)
     seed = whole_number("planner.seed", table.seed, at_least=0)
     return Scenario(file.title, problem, kind(**settings), seed, table.refine)
 

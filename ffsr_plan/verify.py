@@ -77,6 +77,9 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
         )
     if apart <= 0.0:
         problems.append(f"two links touch on edge {int(np.argmin(separations))}")
+    if plan.certificate.least_clearance > least + AGREEMENT:
+        proven = plan.certificate.least_clearance
+        problems.append(f"{proven:.6g} m are said to be proven, but {least:.6g} m were met")
     residual = _momentum_residual(plan, bodies) if plan.problem.mode == "free-flying" else None
     if residual is not None and residual > MOMENTUM_LIMIT:
         problems.append(f"angular momentum is not conserved: residual {residual:.3g}")

@@ -88,6 +88,7 @@ def page(plan: Plan, title: str = "") -> str:
         "clearances": [round(float(c), 5) if np.isfinite(c) else None for c in clearances],
         "turns": np.degrees(angle_between(frames[0, 3:7], frames[:, 3:7])).round(3).tolist(),
         "view": view,
+        "ants": bool(len(plan.trails.layer)),
     }
     return _fill_template(data)
 

@@ -49,7 +49,7 @@ class AntSystem:
 
     def __post_init__(self) -> None:
         checked = {
-            "ants": whole_number("ants", self.ants, at_least=1),
+            "ants": whole_number("ants", self.ants, at_least=1, at_most=100_000),
             "cycles": whole_number("cycles", self.cycles, at_least=1),
             "alpha": number("alpha", self.alpha, at_least=0.0),
             "beta": number("beta", self.beta, at_least=0.0),

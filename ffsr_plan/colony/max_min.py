@@ -11,7 +11,7 @@ from ffsr_plan import paper
 from ffsr_plan.colony.compiling import first_call
 from ffsr_plan.colony.records import Cycle, History, Search, Trails, Watch
 from ffsr_plan.errors import PlanningError
-from ffsr_plan.inputs import Array, Flags, IntArray, frozen, number, whole_number
+from ffsr_plan.inputs import Array, Flags, IntArray, frozen, number, truth, whole_number
 from ffsr_plan.roadmap import Roadmap
 
 if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colony runs
@@ -57,12 +57,16 @@ class MaxMinAntSystem:
 
     def __post_init__(self) -> None:
         checked = {
-            "ants": whole_number("ants", self.ants, at_least=1),
+            "ants": whole_number("ants", self.ants, at_least=1, at_most=100_000),
             "cycles": whole_number("cycles", self.cycles, at_least=1),
-            "beta": None if self.beta is None else number("beta", self.beta, at_least=0.0),
+            "beta": None
+            if self.beta is None
+            else number("beta", self.beta, at_least=0.0, at_most=40.0),
             "rho": number("rho", self.rho, above=0.0, below=1.0),
             "improved": whole_number("improved", self.improved, at_least=0),
             "patience": whole_number("patience", self.patience, at_least=0),
+            "cost_aware": truth("cost_aware", self.cost_aware),
+            "pheromone": truth("pheromone", self.pheromone),
         }
         for field, value in checked.items():
             object.__setattr__(self, field, value)

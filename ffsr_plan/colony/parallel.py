@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -74,6 +75,7 @@ def run_colonies(
             [sys.executable, "-c", "from ffsr_plan.colony.parallel import main; main()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
+            start_new_session=True,  # Ctrl-C reaches us alone, and we pass it on
         )
         for _ in shares
     ]
@@ -87,17 +89,31 @@ def run_colonies(
         outcome: list[Outcome] = pickle.loads(answer)
         return outcome
 
+    pool = ThreadPoolExecutor(len(shares))
+    futures = [pool.submit(collect, worker) for worker in range(len(shares))]
     try:
-        with ThreadPoolExecutor(len(shares)) as pool:
-            parts = list(pool.map(collect, range(len(shares))))
+        _wait(futures, processes)
+        parts = [future.result() for future in futures]
     finally:
         for process in processes:
             process.kill()
-    results: list[Any] = [None] * len(rngs)
+        pool.shutdown()
+    results: dict[int, Outcome] = {}
     for share, part in zip(shares, parts, strict=True):
-        for k, result in zip(share, part, strict=True):
-            results[k] = result
-    return results
+        results |= zip(share, part, strict=False)  # fewer outcomes than colonies after Ctrl-C
+    return [results[k] for k in sorted(results)]
+
+
+def _wait(futures: list[Future[list[Outcome]]], processes: list[subprocess.Popen[bytes]]) -> None:
+    """Until all are back. Ctrl-C asks the workers for what they have, a second one ends all."""
+    try:
+        while wait(futures, timeout=0.2).not_done:
+            pass
+    except KeyboardInterrupt:
+        for process in processes:
+            process.send_signal(signal.SIGINT)
+        while wait(futures, timeout=0.2).not_done:
+            pass
 
 
 def _run(
@@ -119,6 +135,8 @@ def _run(
             result = error
         proofs, queries = own.proofs(), roadmap.prover.queries - before
         outcomes.append(Outcome(result, proofs.edges_free, proofs.edges_refused, queries))
+        if isinstance(result, Search) and result.interrupted and time.monotonic() < deadline:
+            break  # by Ctrl-C: no more colonies
     return outcomes
 
 
