@@ -24,8 +24,8 @@ import ffsr_plan as fp
 DELTA = 2.0
 DEFAULTS = {"ants": 30, "cycles": 242, "divisions": 40, "nodes": 41}
 VALUES = {
-    "ants": (10, 20, 40, 80, 160),
-    "cycles": (30, 60, 120, 240, 480),
+    "ants": (30, 120, 480, 1920),
+    "cycles": (242, 968, 3872, 15488),
     "divisions": (20, 40, 80, 160),
     "nodes": (21, 41, 81, 161, 321),
 }

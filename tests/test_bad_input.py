@@ -220,3 +220,53 @@ def test_every_error_has_one_root_and_survives_pickling():
         again = pickle.loads(pickle.dumps(error))
         assert str(again) == str(error)
         assert again.__dict__ == error.__dict__
+
+
+def test_huge_numbers_are_refused_before_they_reach_coal(robot):
+    with pytest.raises(fp.InvalidInput, match=r"scene centers.*1e\+09"):
+        fp.Scene([[1e200, 0, 0]], [1.0])
+    with pytest.raises(fp.InvalidInput, match=r"position.*1e\+09"):
+        robot.configuration((1e12, 0, 0))
+    with pytest.raises(fp.InvalidInput, match=r"spacing.*at most 1e\+06"):
+        fp.Axis(2, 1e200)
+    with pytest.raises(fp.InvalidInput, match=r"beta.*at most 40"):
+        fp.MaxMinAntSystem(beta=1e6)
+
+
+def test_a_lattice_too_large_for_the_memory_is_refused_with_its_size(robot):
+    huge = fp.Lattice(40, fp.Axis(100_000, 1e-4))
+    with pytest.raises(fp.InvalidInput, match="200001 nodes a layer and 40 divisions"):
+        fp.plan(fp.Problem(**arguments(robot, lattice=huge)))
+    with pytest.raises(fp.InvalidInput, match="at most 100000"):
+        fp.AntSystem(ants=10**9)
+
+
+def test_things_of_another_kind_are_refused_by_name(robot):
+    scenario = fp.read_scenario("fig2a")
+    cases = {
+        "problem": [lambda: fp.plan(scenario), lambda: fp.plan(None), lambda: fp.plan("fig2a")],
+        "joints": [lambda: robot.configuration(joints=[1, 2])],
+        "robot": [lambda: fp.load_robot(None), lambda: fp.clearance(3, fp.Scene(), [0.0])],
+        "scene": [lambda: fp.clearance(robot, 4, robot.neutral())],
+        "scenario": [lambda: fp.load_scenario(None)],
+        "lattice": [lambda: fp.Problem(**arguments(robot, lattice=0))],
+        "refine": [lambda: fp.plan(scenario.problem, refine="no")],
+        "on_cycle": [lambda: fp.plan(scenario.problem, on_cycle=3)],
+        "cost_aware": [lambda: fp.MaxMinAntSystem(cost_aware="no")],
+        "pheromone": [lambda: fp.MaxMinAntSystem(pheromone=3)],
+    }
+    for name, calls in cases.items():
+        for call in calls:
+            with pytest.raises(fp.InvalidInput, match=name):
+                call()
+
+
+def test_a_file_that_cannot_be_written_is_named_and_nothing_is_left_behind(fig2a_plan, tmp_path):
+    with pytest.raises(fp.InvalidInput, match="nowhere"):
+        fig2a_plan.save(tmp_path / "nowhere" / "plan.json")
+    with pytest.raises(fp.InvalidInput, match=str(tmp_path)):
+        fig2a_plan.save(tmp_path)
+    with pytest.raises(fp.InvalidInput, match="page"):
+        fig2a_plan.write_html(tmp_path / "nowhere" / "plan.html")
+    assert list(tmp_path.iterdir()) == []
+    assert not tmp_path.with_name(tmp_path.name + ".part").exists()

@@ -85,6 +85,29 @@ def test_no_path_is_exit_status_1_with_the_reason_on_standard_error(run, tmp_pat
     assert not (tmp_path / "results").exists()
 
 
+def test_a_title_with_brackets_is_shown_as_it_is(run, tmp_path):
+    (tmp_path / "odd.toml").write_text(QUICK.replace('"quick"', '"[red]odd[/foo]"'))
+    result = run("plan", "odd.toml", "--no-verify")
+    assert result.exit_code == 0
+    assert "[red]odd[/foo]" in result.stdout
+
+
+def test_an_output_that_cannot_be_written_is_refused_before_planning(run, tmp_path):
+    (tmp_path / "file").write_text("")
+    result = run("plan", "quick.toml", "--out", "file/inside")
+    assert result.exit_code == 2
+    assert "can be written" in result.stderr
+
+
+def test_every_planner_can_be_chosen_and_refinement_switched_off(run):
+    for name in ("ant-system", "max-min-ant-system", "lattice-optimum"):
+        result = run("plan", "quick.toml", "--planner", name, "--no-refine", "--out", name)
+        assert result.exit_code == 0, result.output
+        assert "gap" in result.stdout
+    result = run("plan", "quick.toml", "--colonies", 2, "--workers", 2, "--time-limit", 5)
+    assert result.exit_code == 0
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -275,3 +275,24 @@ def test_a_word_is_said_when_compiling_takes_its_time(capfd):
     with first_call(Kernel()):
         time.sleep(1.8)
     assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_one_ctrl_c_ends_all_colonies_and_returns_the_best_so_far(workers):
+    code = (
+        "import ffsr_plan as fp\n"
+        "p = fp.load_scenario('fig2a')\n"
+        "fp.plan(p, fp.MaxMinAntSystem(cycles=5))\n"
+        "print('planning', flush=True)\n"
+        "endless = fp.MaxMinAntSystem(cycles=10**6)\n"
+        f"plan = fp.plan(p, endless, colonies=4, workers={workers})\n"
+        "print(plan.interrupted, plan.verify(20).ok)\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout.readline() == "planning\n"
+    time.sleep(6.0)  # workers have to start
+    os.kill(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert out == "True True\n", err

@@ -234,3 +234,70 @@ def test_a_file_that_is_no_plan_is_refused(tmp_path):
             fp.Plan.load(tmp_path / "plan.json")
     with pytest.raises(fp.InvalidInput, match="FileNotFoundError"):
         fp.Plan.load(tmp_path / "missing.json")
+
+
+def resigned(path, change):
+    """Change a plan file and give it a digest that fits, as only a forger would."""
+    from ffsr_plan.plan_file import _digest
+
+    data = json.loads(path.read_text())
+    data.pop("sha256")
+    change(data)
+    path.write_text(json.dumps({"sha256": _digest(data), **data}))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda d: d["configurations"].pop(),
+        lambda d: d.update(configurations=[]),
+        lambda d: d.update(clearances=d["clearances"][:3]),
+        lambda d: d["nodes"].pop(),
+        lambda d: d["problem"]["lattice"].update(divisions=41),
+        lambda d: d.update(length="a"),
+        lambda d: d["planner"].update(name="ants"),
+        lambda d: d.pop("history"),
+    ],
+)
+def test_a_malformed_plan_file_is_refused_even_with_a_fitting_digest(fig2a_plan, tmp_path, change):
+    fig2a_plan.save(tmp_path / "plan.json")
+    resigned(tmp_path / "plan.json", change)
+    with pytest.raises(fp.InvalidInput):
+        fp.Plan.load(tmp_path / "plan.json")
+
+
+@pytest.mark.parametrize(
+    "text", ['{"format": "ffsr-plan/1", "a": NaN}', "[" * 100_000, '{"a": ' + "1" * 5001 + "}"]
+)
+def test_hostile_json_is_refused(tmp_path, text):
+    (tmp_path / "plan.json").write_text(text)
+    with pytest.raises(fp.InvalidInput):
+        fp.Plan.load(tmp_path / "plan.json")
+
+
+def test_verification_notices_a_proof_that_claims_too_much(fig2a_plan):
+    certificate = fig2a_plan.certificate._replace(least_clearance=9.0)
+    report = moved(fig2a_plan, certificate=certificate).verify(50)
+    assert "said to be proven" in " ".join(report.problems)
+
+
+def test_certificates_count_every_edge_of_the_path_and_nothing_below_zero(robot, point):
+    empty = fp.Problem(
+        robot, fp.Scene(), robot.neutral(), robot.configuration((4, 0, 0)),
+        lattice=fp.Lattice(10, fp.Axis(5, 0.2)),
+    )  # fmt: skip
+    for problem in (empty, fp.load_scenario("fig2b")):
+        for planner in (fp.LatticeOptimum(), fp.MaxMinAntSystem(cycles=5), fp.AntSystem(cycles=2)):
+            proof = fp.plan(problem, planner).certificate
+            assert proof.edges_free >= problem.lattice.divisions
+            assert min(proof[:4]) >= 0
+
+
+def test_a_gap_exists_where_nothing_counts_as_length(robot):
+    problem = fp.Problem(
+        robot, fp.Scene(), robot.neutral(), robot.configuration(joints={"left_1": 1.0}),
+        rotation_weight=0.0, lattice=fp.Lattice(10),
+    )  # fmt: skip
+    plan = fp.plan(problem)
+    assert plan.gap == 0.0
+    assert plan.length == 0.0
