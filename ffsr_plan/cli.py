@@ -44,6 +44,26 @@ Out = Annotated[
 Force = Annotated[bool, typer.Option("--force", help="Replace results that are there already.")]
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        out_console.print(f"ffsr-plan {version('ffsr-plan')}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Say the version and stop."
+        ),
+    ] = False,
+) -> None:
+    """Options that stand before a command."""
+
+
 @app.command()
 def demo(out: Out = None, force: Force = False) -> None:
     """Plan, verify and show the scene of the paper's Fig. 2(a) with the default planner."""
@@ -252,7 +272,8 @@ def _plan_table(title: str, found: Plan, report: Report | None) -> Table:
     )
     cycles = len(found.history.best)
     early = ", interrupted: the best so far" if found.interrupted else ""
-    table.add_row("planner", f"{found.planner.name}, seed {found.seed}, {cycles} cycles{early}")
+    ran = f", seed {found.seed}, {cycles} cycles" if len(found.trails.layer) else ""
+    table.add_row("planner", f"{found.planner.name}{ran}{early}")
     table.add_row("time", f"{found.seconds:.2f} s")
     if report is not None:
         for name, value in _report_rows(report):

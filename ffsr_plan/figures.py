@@ -64,7 +64,8 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
     axes.autoscale_view()
     axes.margins(0.03)
     axes.set_xlabel("along the path frame's z' [m]")
-    axes.set_ylabel("lateral x' [m]")
+    seen = ", seen along the normal y'" if problem.lattice.normal is not None else ""
+    axes.set_ylabel(f"lateral x' [m]{seen}")
     axes.set_title(
         f"L = {plan.length:.2f} m, F = {plan.objective:.1f}, δ = {problem.delta:g}, "
         f"proven clearance {plan.certificate.least_clearance:.3f} m"

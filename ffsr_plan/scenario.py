@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
@@ -188,10 +190,14 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
             "no goal attitude in the mode free-flying, where it follows from the arms; "
             "leave it out, or use mode = 'attitude-held'",
         )
-    start = robot.configuration(**file.start.model_dump())
-    goal = robot.configuration(
-        file.goal.position, file.goal.attitude or (0.0, 0.0, 0.0), file.goal.joints
-    )
+    with _in_table("start"):
+        start = robot.configuration(**file.start.model_dump())
+    with _in_table("goal"):
+        goal = robot.configuration(
+            file.goal.position, file.goal.attitude or (0.0, 0.0, 0.0), file.goal.joints
+        )
+    with _in_table("obstacles"):
+        scene = Scene([o.center for o in file.obstacles], [o.radius for o in file.obstacles])
     axes = {
         name: Axis(**table.model_dump())
         for name in ("lateral", "normal")
@@ -199,7 +205,7 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
     }
     problem = Problem(
         robot,
-        Scene([o.center for o in file.obstacles], [o.radius for o in file.obstacles]),
+        scene,
         start=start,
         goal=goal,
         mode=file.robot.mode,
@@ -215,6 +221,15 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
             raise unknown_name(f"planner ({kind.name})", key, known)
     seed = whole_number("planner.seed", table.seed, at_least=0)
     return Scenario(file.title, problem, kind(**settings), seed, table.refine)
+
+
+@contextmanager
+def _in_table(name: str) -> Iterator[None]:
+    """Say in which table of the file a value stands."""
+    try:
+        yield
+    except InvalidInput as error:
+        raise InvalidInput(f"{name}: {error.what}", error.value, error.allowed) from None
 
 
 def _explain(what: str, error: Any) -> InvalidInput:  # noqa: ANN401 - pydantic's error record

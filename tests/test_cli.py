@@ -134,3 +134,9 @@ def test_a_changed_plan_file_does_not_pass_as_verified(run, tmp_path):
     path = tmp_path / "results" / "plan.json"
     path.write_text(path.read_text().replace('"radii": [\n    0.3', '"radii": [\n    0.2'))
     assert run("verify", path).exit_code == 2
+
+
+def test_the_version_is_said(run):
+    result = run("--version")
+    assert result.exit_code == 0
+    assert result.stdout.startswith("ffsr-plan 0.")
