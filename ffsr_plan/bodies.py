@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
-from itertools import product
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ import numpy as np
 from ffsr_plan.inputs import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shape:
     """A collision shape: a sphere (`half` is None) or a box."""
 
@@ -46,6 +46,25 @@ class Bodies:
         self.inertials = {link.name: link.inertial for link in robot.links if link.inertial}
         self.shapes = [
             _shape(link.name, collision) for link in robot.links for collision in link.collisions
+        ]
+
+    def pairs(self) -> list[tuple[Shape, Shape]]:
+        """Shapes that must not touch: not of one rigid body, nor of two that a joint links."""
+        body, carrier = {self.root: self.root}, {self.root: ""}
+        waiting = [self.root]
+        while waiting:
+            parent = waiting.pop()
+            for joint in self._children[parent]:
+                rigid = joint.type == "fixed"
+                body[joint.child] = body[parent] if rigid else joint.child
+                carrier.setdefault(body[joint.child], body[parent])
+                waiting.append(joint.child)
+        return [
+            (a, b)
+            for a, b in combinations(self.shapes, 2)
+            if body[a.link] != body[b.link]
+            and carrier[body[a.link]] != body[b.link]
+            and carrier[body[b.link]] != body[a.link]
         ]
 
     def link_poses(self, base: Array, joints: dict[str, Array]) -> dict[str, Array]:

@@ -59,6 +59,7 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
     samples = whole_number("samples", samples, at_least=1)
     problems: list[str] = []
     bodies = Bodies(plan.problem.robot.urdf)
+    pairs = bodies.pairs()
     divisions = plan.problem.lattice.divisions
     clearances, separations, largest, checked = [], [], 0.0, 0
     for edge in range(divisions):
@@ -66,7 +67,7 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
         poses = _poses(plan, bodies, q)
         placed = [poses[s.link] @ s.placement for s in bodies.shapes]
         clearances.append(_least_clearance(plan, bodies.shapes, placed))
-        separations.append(_least_separation(plan, bodies.shapes, placed))
+        separations.append(_least_separation(pairs, dict(zip(bodies.shapes, placed, strict=True))))
         ways = [np.linalg.norm(np.diff(p[:, :3, 3], axis=0), axis=1).max() for p in placed]
         largest = max([largest, *map(float, ways)])
         checked += len(q)
@@ -116,12 +117,11 @@ def _least_clearance(plan: Plan, shapes: list[Shape], placed: list[Array]) -> fl
     return least
 
 
-def _least_separation(plan: Plan, shapes: list[Shape], placed: list[Array]) -> float:
+def _least_separation(pairs: list[tuple[Shape, Shape]], placed: dict[Shape, Array]) -> float:
     """Over all samples of all pairs; what lies apart by its bounding spheres counts with that."""
     least = np.inf
-    for pair in plan.problem.robot.collision_model.collisionPairs:
-        a, b = shapes[pair.first], shapes[pair.second]
-        pose_a, pose_b = placed[pair.first], placed[pair.second]
+    for a, b in pairs:
+        pose_a, pose_b = placed[a], placed[b]
         apart = np.linalg.norm(pose_a[:, :3, 3] - pose_b[:, :3, 3], axis=1) - a.radius - b.radius
         close = apart <= 0.0
         least = min(least, float(np.min(apart[~close], initial=np.inf)))

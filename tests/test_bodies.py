@@ -4,12 +4,22 @@ import coal
 import numpy as np
 import pinocchio as pin
 import pytest
-from builders import random_configuration, random_robot, random_scene
+from builders import (
+    box,
+    inertial,
+    joint,
+    link,
+    random_configuration,
+    random_robot,
+    random_scene,
+    urdf,
+)
 from closed_forms import clearance, clearances
 from hypothesis import given
 from hypothesis import strategies as st
 
 from ffsr_plan.bodies import Bodies, Shape, pose, separation
+from ffsr_plan.robot import robot_from_urdf
 
 seeds = st.integers(0, 10_000)
 
@@ -25,6 +35,30 @@ def test_link_poses_agree_with_pinocchio(seed):
     for name, found in poses.items():
         expected = data.oMf[robot.model.getFrameId(name)].homogeneous
         assert np.allclose(found[0], expected, atol=1e-12)
+
+
+@given(seeds)
+def test_the_pairs_that_must_not_touch_are_those_of_the_robot(seed):
+    robot = random_robot(seed)
+    shapes = robot.collision_model.geometryObjects
+    planned = {
+        frozenset(robot.link_of(shapes[k]) for k in (p.first, p.second))
+        for p in robot.collision_model.collisionPairs
+    }
+    assert {frozenset((a.link, b.link)) for a, b in Bodies(robot.urdf).pairs()} == planned
+
+
+def test_links_rigidly_joined_count_as_one_body():
+    cube = inertial(1.0, (1.0, 1.0, 1.0)) + box((0.2, 0.2, 0.2))
+    text = urdf(
+        link("base", cube), link("mast", cube), link("arm", cube), link("hand", cube),
+        joint("weld", "fixed", "base", "mast", (0, 0, 0.3)),
+        joint("shoulder", "revolute", "mast", "arm", (0.3, 0, 0)),
+        joint("wrist", "revolute", "arm", "hand", (0.3, 0, 0)),
+    )  # fmt: skip
+    pairs = {frozenset((a.link, b.link)) for a, b in Bodies(text).pairs()}
+    assert pairs == {frozenset(("base", "hand")), frozenset(("mast", "hand"))}
+    assert len(robot_from_urdf(text, "welded").collision_model.collisionPairs) == 2
 
 
 @given(seeds)

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import ffsr_plan as fp
 from ffsr_plan import attitude
 from ffsr_plan.inputs import frozen
 from ffsr_plan.objective import path_length
+from ffsr_plan.robot import robot_from_urdf
 
 
 @pytest.fixture(scope="module")
@@ -301,3 +303,36 @@ def test_a_gap_exists_where_nothing_counts_as_length(robot):
     plan = fp.plan(problem)
     assert plan.gap == 0.0
     assert plan.length == 0.0
+
+
+def test_verification_does_not_depend_on_the_order_of_links_in_the_urdf(robot):
+    """Pinocchio lists shapes along the tree, the re-check as they stand in the file."""
+    root = ElementTree.fromstring(robot.urdf)
+    links = root.findall("link")
+    for element in links:
+        root.remove(element)
+    root.extend(reversed(links))
+    shuffled = robot_from_urdf(ElementTree.tostring(root, encoding="unicode"), "shuffled")
+    original = fp.load_scenario("fig2b")
+    plans = [
+        fp.plan(with_changes(original, robot=r), fp.LatticeOptimum(), refine=False)
+        for r in (robot, shuffled)
+    ]
+    reports = [plan.verify(50) for plan in plans]
+    assert all(report.ok for report in reports)
+    assert reports[0].least_self_separation == pytest.approx(reports[1].least_self_separation)
+
+
+def test_verification_notices_arms_that_pass_through_each_other(robot):
+    """A robot whose self-collision pairs got lost plans through itself; the check has its own."""
+    careless = robot_from_urdf(robot.urdf, "careless")
+    careless.collision_model.removeAllCollisionPairs()
+    names = robot.joint_names
+    begin, end = (-1.6, -1.0, -0.4, 0.9, 1.9, 1.0), (-1.6, -1.5, -0.7, 1.0, -0.6, 0.6)
+    start = robot.configuration(joints=dict(zip(names, begin, strict=True)))
+    goal = robot.configuration((6, 0, 0), joints=dict(zip(names, end, strict=True)))
+    problem = fp.Problem(careless, fp.Scene(), start, goal,
+                         lattice=fp.Lattice(8, fp.Axis(2, 0.3)))  # fmt: skip
+    report = fp.plan(problem, fp.LatticeOptimum()).verify(100)
+    assert not report.ok
+    assert "two links touch" in " ".join(report.problems)
