@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ffsr_plan.colony import AntSystem, MaxMinAntSystem, Search, Watch
+from ffsr_plan.colony import AntSystem, MaxMinAntSystem, Planner, Search, Watch
 from ffsr_plan.colony.parallel import Outcome, run_colonies
 from ffsr_plan.colony.records import OnCycle
 from ffsr_plan.errors import FfsrPlanError, InvalidInput
@@ -16,7 +16,7 @@ from ffsr_plan.inputs import frozen, number, truth, whole_number
 from ffsr_plan.optimum import LatticeOptimum, lattice_optimum
 from ffsr_plan.problem import Problem
 from ffsr_plan.refinement import refined
-from ffsr_plan.result import Plan, Planner
+from ffsr_plan.result import Plan
 from ffsr_plan.roadmap import Roadmap
 
 PLANNERS: dict[str, type[Planner]] = {

@@ -5,34 +5,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ffsr_plan.attitude import to_angles
-from ffsr_plan.colony import History, Search, Trails, Watch
+from ffsr_plan.colony import History, Planner, Trails
 from ffsr_plan.errors import InvalidInput
 from ffsr_plan.inputs import Array, IntArray, finite_array
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.motion import Motion
 from ffsr_plan.problem import Problem
-from ffsr_plan.roadmap import Certificate, Roadmap
+from ffsr_plan.roadmap import Certificate
 
 if TYPE_CHECKING:  # these import this module; a plan calls them when asked to
     from ffsr_plan.verify import Report
-
-
-class Planner(Protocol):
-    """What `plan` can run: settings with a name and a search."""
-
-    name: ClassVar[str]
-    __dataclass_fields__: ClassVar[dict[str, Any]]
-
-    def search(
-        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
-    ) -> Search:
-        """Search a roadmap for a path, all of whose edges are proven free."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -159,15 +159,13 @@ class Roadmap:
 
     def no_path(self) -> NoPath | None:
         """Search the lattice from the start, certifying as needed; the error if it has no path."""
-        m, n, origin = self.lattice.divisions, self.lattice.size, self.lattice.origin
-        reached = [origin]
+        m, origin = self.lattice.divisions, self.lattice.origin
+        reached, admissible = [origin], self.admissible
         for layer in range(m):
-            heads = [origin] if layer == m - 1 else [
-                k for k in range(n) if self.admissible[layer + 1, k]
-            ]  # fmt: skip
+            heads = np.flatnonzero(admissible[layer + 1]).tolist()
             onwards = [k for k in heads if any(self.free(layer, j, k) for j in reached)]
             if not onwards:
-                return NoPath(layer + 1, self._closing(layer, reached), m)
+                return NoPath(layer + 1, self._closing(layer), m)
             reached = onwards
         return None
 
@@ -178,17 +176,16 @@ class Roadmap:
             self._nodes.learn(path)
         return float(self._nodes.bounds[layer, node])
 
-    def _closing(self, layer: int, reached: list[int]) -> tuple[int | str, ...]:
-        """What closes all edges from the nodes `reached` of a layer to the next one."""
+    def _closing(self, layer: int) -> tuple[int | str, ...]:
+        """What blocks the edges of a layer that were looked at, and the nodes they lead to."""
         offsets, found = self.lattice.offsets, set[int | str]()
         for (i, tail, head), verdict in self._verdicts.items():
             if i == layer and not verdict.free:
                 found.add(
                     self.prover.nearest_obstacle(i, offsets[tail], offsets[head], verdict.time)
                 )
-        for node in np.flatnonzero(~self.admissible[layer + 1]):
-            if layer + 1 < self.lattice.divisions:
-                at = offsets[node]
+        if layer + 1 < self.lattice.divisions:
+            for at in offsets[~self.admissible[layer + 1]]:
                 found.add(self.prover.nearest_obstacle(layer + 1, at, at, 0.0))
         return tuple(sorted(found, key=lambda name: (isinstance(name, str), name)))
 

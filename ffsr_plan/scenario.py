@@ -13,13 +13,12 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ffsr_plan import bundled
 from ffsr_plan.axes import Axis, Lattice
-from ffsr_plan.colony import MaxMinAntSystem
+from ffsr_plan.colony import MaxMinAntSystem, Planner
 from ffsr_plan.errors import InvalidInput, unknown_name
 from ffsr_plan.inputs import one_of, whole_number
 from ffsr_plan.paper import DIVISIONS
 from ffsr_plan.planner import PLANNERS
 from ffsr_plan.problem import MODES, Problem
-from ffsr_plan.result import Planner
 from ffsr_plan.robot import load_robot
 from ffsr_plan.scene import Scene
 

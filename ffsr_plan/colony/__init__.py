@@ -2,6 +2,15 @@
 
 from ffsr_plan.colony.ant_system import AntSystem
 from ffsr_plan.colony.max_min import MaxMinAntSystem
-from ffsr_plan.colony.records import Cycle, History, Search, Trails, Watch
+from ffsr_plan.colony.records import Cycle, History, Planner, Search, Trails, Watch
 
-__all__ = ["AntSystem", "Cycle", "History", "MaxMinAntSystem", "Search", "Trails", "Watch"]
+__all__ = [
+    "AntSystem",
+    "Cycle",
+    "History",
+    "MaxMinAntSystem",
+    "Planner",
+    "Search",
+    "Trails",
+    "Watch",
+]

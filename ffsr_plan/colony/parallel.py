@@ -14,11 +14,11 @@ import subprocess
 import sys
 import time
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.colony.records import Search, Watch
+from ffsr_plan.colony.records import Planner, Search, Watch
 from ffsr_plan.errors import FfsrPlanError, PlanningError
 from ffsr_plan.problem import Problem
 from ffsr_plan.roadmap import Roadmap
@@ -57,7 +57,7 @@ class Outcome(NamedTuple):
 
 def run_colonies(
     roadmap: Roadmap,
-    planner: Any,  # noqa: ANN401 - any planner class
+    planner: Planner,
     rngs: list[np.random.Generator],
     workers: int,
     seconds: float,
@@ -118,7 +118,7 @@ def _wait(futures: list[Future[list[Outcome]]], processes: list[subprocess.Popen
 
 def _run(
     roadmap: Roadmap,
-    planner: Any,  # noqa: ANN401 - any planner class
+    planner: Planner,
     rngs: list[np.random.Generator],
     seconds: float,
 ) -> list[Outcome]:

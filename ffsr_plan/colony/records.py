@@ -6,9 +6,14 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+
+import numpy as np
 
 from ffsr_plan.inputs import Array, IntArray
+
+if TYPE_CHECKING:
+    from ffsr_plan.roadmap import Roadmap
 
 
 class Cycle(NamedTuple):
@@ -88,3 +93,15 @@ class Search(NamedTuple):
     trails: Trails
     interrupted: bool = False
     """Whether the time limit or Ctrl-C ended it early."""
+
+
+class Planner(Protocol):
+    """What `plan` can run: settings with a name and a search."""
+
+    name: ClassVar[str]
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def search(
+        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
+    ) -> Search:
+        """Search a roadmap for a path, all of whose edges are proven free."""
