@@ -1,22 +1,18 @@
 """How far any point of the robot can travel: the bound behind every proof that an edge is free.
 
-Joints move linearly at |theta_j'| = t_j, the base origin at |p'|, all per unit of the edge's time.
-Relative to the base and in its frame, from the base outwards (j a joint, p its parent, d_j its
-offset in the parent):
+`TravelBound` bounds, shape by shape and interval by interval, the length of the path that a point
+traces in the world while the joints move linearly, the base origin too, and the base turns in
+reaction or steadily. All rates are per unit of the edge's time; an interval has length h and middle
+m. A point at y from the base origin (base axes) has the world velocity R (omega x y + y') + Dp and
+an acceleration of at most A, all along; so it travels no farther than
 
-    W_j = W_p + t_j              angular speed, revolute; a prismatic joint adds nothing to W
-    V_j = V_p + W_p |d_j| (+t_j) speed of the joint's origin; for a prismatic joint |d_j| grows by
-                                 the largest |theta_j| of the path, and V by t_j
-    rho_j = rho_p + |d_j|        distance from the base origin
+    T = min { h |velocity(m) + Dp| + A h^2 / 4,  h (|Dp| + Omega rho + v) }
 
-A point at x from the origin of its joint moves at v = V + W x at most, and no faster than
-|p'| + Omega (rho + x) + v in the world, Omega being a bound on the base's angular speed.
+    A = (kappa + Omega^2) rho + 2 Omega v + a
 
-Omega at zero momentum: the reaction minimises the kinetic energy of the motion about the centre of
-mass, so I(theta) omega . omega <= sum m_i |v_i|^2 + lmax_i |w_i|^2 over the bodies' velocities
-relative to the base, and I(theta) >= sum lmin_i, the least principal moments of the bodies. Hence
-Omega^2 <= sum (m_i (V_i + W_i c_i)^2 + lmax_i W_i^2) / sum lmin_i, with c_i the distance of a
-body's centre of mass from its joint.
+with bounds Omega >= |omega|, kappa >= |omega'|, rho >= |y|, v >= |y'|, a >= |y''|. docs/proof.md
+derives them all. Points of a shape travel no farther than the points that it is the hull of; around
+these, spheres and capsules keep a constant distance, which cancels in the proof.
 """
 
 from __future__ import annotations
@@ -28,8 +24,303 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from ffsr_plan.inputs import Array
+from ffsr_plan import attitude
+from ffsr_plan.attitude import cross
+from ffsr_plan.inputs import Array, IntArray
+from ffsr_plan.kinematics import Poses, Tree, Velocities, turned
 from ffsr_plan.robot import SpaceRobot
+
+
+class Travel(NamedTuple):
+    """The bound over K intervals, open to any displacement of the base; P points of g shapes."""
+
+    velocity: Array
+    """(K, P, 3) at the middle, about the base origin, world axes [m per unit of edge time]."""
+    speed: Array
+    """(K, P) the most of its norm over the interval."""
+    bend: Array
+    """(K, P) what a change of velocity can add over the interval, A h^2 / 4 [m]."""
+    slack: Array
+    """(K, P) the share of the attitude's error [m]."""
+    lengths: Array
+    """(K,) h, in units of edge time."""
+    first: IntArray
+    """(g,) the first of each shape's points, which follow one another."""
+
+    def bounds(self, interval: int | IntArray, base_step: Array) -> Array:
+        """T (..., g) [m] on intervals (...) while the base origin covers `base_step` (..., 3).
+
+        Both may have leading axes, which broadcast: many edges share an interval, or each has its
+        own. The step is that of a whole edge, in world axes [m].
+        """
+        length = self.lengths[interval][..., None]
+        velocity = self.velocity[interval] + base_step[..., None, :]
+        straight = length * np.linalg.norm(velocity, axis=-1) + self.bend[interval]
+        base_speed = np.linalg.norm(base_step, axis=-1)[..., None]
+        coarse = length * (base_speed + self.speed[interval])
+        return self._of_shapes(np.minimum(straight, coarse) + self.slack[interval])
+
+    def _of_shapes(self, points: Array) -> Array:
+        return np.asarray(np.maximum.reduceat(points, self.first, axis=-1))
+
+
+class _Reach(NamedTuple):
+    """Bounds over each of K intervals on what moves relative to the base; n links or points."""
+
+    distance: Array
+    """(K, n) from the base origin [m]."""
+    speed: Array
+    """(K, n) [m]."""
+    bend: Array
+    """(K, n) acceleration [m]."""
+
+
+class _Turn(NamedTuple):
+    """The base's rotation over each of K intervals."""
+
+    rate: Array
+    """(K, 3) angular velocity at the middle, base axes [rad]."""
+    most: Array
+    """(K,) Omega."""
+    change: Array
+    """(K,) kappa."""
+
+
+class _Links(NamedTuple):
+    """The links over each of K intervals, relative to the base."""
+
+    poses: Poses
+    velocities: Velocities
+    half: Array
+    """(K, 1) half the length of the interval."""
+    origins: _Reach
+    angular: Array
+    """(K, n) bound on the angular speed [rad]."""
+    angular_change: Array
+    """(K, n) bound on the angular acceleration [rad]."""
+
+    def reach(self, links: IntArray, places: Array) -> tuple[Array, Array, _Reach]:
+        """Points at `places` (N, 3) of `links` (N,): where, how fast (K, N, 3), and bounds."""
+        arms = turned(self.poses.rotations[:, links], places)
+        position = self.poses.origins[:, links] + arms
+        velocity = self.velocities.linear[:, links] + cross(self.velocities.angular[:, links], arms)
+        length = np.linalg.norm(places, axis=-1)
+        angular = self.angular[:, links]
+        bend = self.origins.bend[:, links] + (self.angular_change[:, links] + angular**2) * length
+        distance = self.origins.distance[:, links] + length
+        speed = self.origins.speed[:, links] + angular * length
+        return position, velocity, _tightened(position, velocity, self.half, distance, speed, bend)
+
+
+class TravelBound:
+    """The bound for one robot, ready for any motion of its joints."""
+
+    def __init__(self, robot: SpaceRobot) -> None:
+        model = robot.model
+        self._tree = tree = Tree(model)
+        bodies = list(model.inertias)[1:]
+        self._masses = np.array([body.mass for body in bodies])
+        self._levers = np.array([body.lever for body in bodies])
+        self._inertias = np.array([body.inertia for body in bodies])
+        moments = np.maximum(np.linalg.eigvalsh(self._inertias), 0.0)
+        self._least, self._most = moments[:, 0], moments[:, 2]
+        self._links = np.arange(len(bodies))
+        # the axes of a joint and of the last turning one before it stand at a constant angle
+        self._before = np.zeros(len(bodies), dtype=np.int64)
+        for level in tree.levels:
+            parents = tree.parents[level]
+            self._before[level] = np.where(tree.prismatic[parents], self._before[parents], parents)
+        neutral = tree.poses(np.zeros((1, robot.nd))).rotations[0]
+        axes = turned(neutral, tree.axes)
+        self._cosine = np.abs(np.sum(axes * axes[self._before], axis=1))
+        self._sine = np.linalg.norm(cross(axes, axes[self._before]), axis=1)
+        points = [_points(g) for g in robot.collision_model.geometryObjects]
+        counts = np.array([len(p) for p in points], dtype=np.int64)
+        carriers = [g.parentJoint - 1 for g in robot.collision_model.geometryObjects]
+        self._first = np.cumsum(counts) - counts
+        self._carriers = np.repeat(np.array(carriers, dtype=np.int64), counts)
+        self._points = np.concatenate([np.zeros((0, 3)), *points])
+
+    def reacting(
+        self,
+        joint_values: Array,
+        joint_rates: Array,
+        attitudes: Array,
+        lengths: Array,
+        error: float,
+    ) -> Travel:
+        """The base turns so that the angular momentum stays zero (free-flying).
+
+        Args:
+            joint_values: (K, nd) at the middle of each interval [rad or m].
+            joint_rates: (K, nd) change over a whole edge [rad or m].
+            attitudes: (K, 4) of the base at the middle (xyzw).
+            lengths: (K,) of the intervals, in units of edge time: at most 1.
+            error: bound on the angle [rad] by which any attitude may be wrong, these and those at
+                which clearances are measured.
+        """
+        links = self._over(joint_values, joint_rates, lengths)
+        return self._world(links, self._reaction(links), attitudes, error)
+
+    def held(
+        self,
+        joint_values: Array,
+        joint_rates: Array,
+        attitudes: Array,
+        lengths: Array,
+        turn: Array,
+    ) -> Travel:
+        """The base turns at the angular velocity `turn` (K, 3), base axes [rad] per unit of time.
+
+        The other arguments are those of `reacting`.
+        """
+        links = self._over(joint_values, joint_rates, lengths)
+        most = np.sqrt(np.sum(turn**2, axis=-1))
+        turning = _Turn(turn, most, np.zeros_like(most))
+        return self._world(links, turning, attitudes, 0.0)
+
+    def in_base(self, joint_values: Array, joint_rates: Array, lengths: Array) -> Array:
+        """(K, g) [m] as seen from the base; arguments as for `reacting`.
+
+        Two shapes of one robot keep apart where their distances at an interval's ends sum to more
+        than the sum of their two bounds.
+        """
+        links = self._over(joint_values, joint_rates, lengths)
+        still = _Turn(*(np.zeros((len(lengths), *rest)) for rest in ((3,), (), ())))
+        identity = np.broadcast_to(attitude.IDENTITY, (len(lengths), 4))
+        travel = self._world(links, still, identity, 0.0)
+        return travel.bounds(np.arange(len(lengths)), np.zeros((len(lengths), 3)))
+
+    def _over(self, joint_values: Array, joint_rates: Array, lengths: Array) -> _Links:
+        """Bounds on the links' motion relative to the base, from the base outwards."""
+        tree, half = self._tree, 0.5 * lengths[:, None]
+        poses = tree.poses(joint_values)
+        velocities = tree.velocities(poses, joint_rates)
+        rates = np.concatenate([np.zeros_like(half), np.abs(joint_rates)], axis=1)
+        turns, slides = rates * ~tree.prismatic, rates * tree.prismatic
+        # a convex function of the joint value: largest at one of the interval's ends
+        offsets = np.maximum(
+            *(
+                np.linalg.norm(tree.offsets(joint_values + end * half * joint_rates), axis=-1)
+                for end in (-1.0, 1.0)
+            )
+        )
+        angular_now = np.linalg.norm(velocities.angular, axis=-1)
+        angular, angular_change, across = np.zeros((3, *rates.shape))
+        distance, speed, bend = np.zeros((3, *rates.shape))
+        for j in tree.levels:
+            p = tree.parents[j]
+            turning, offset = angular[:, p], offsets[:, j]
+            # |w_p x s_j|: what the parent's rotation has across the joint's axis
+            across[:, j] = np.minimum(
+                turning, self._cosine[j] * across[:, self._before[j]] + self._sine[j] * turning
+            )
+            angular_change[:, j] = angular_change[:, p] + across[:, j] * turns[:, j]
+            angular[:, j] = np.minimum(
+                turning + turns[:, j], angular_now[:, j] + half * angular_change[:, j]
+            )
+            distance[:, j], speed[:, j], bend[:, j] = _tightened(
+                poses.origins[:, j],
+                velocities.linear[:, j],
+                half,
+                distance[:, p] + offset,
+                speed[:, p] + turning * offset + slides[:, j],
+                bend[:, p]
+                + (angular_change[:, p] + turning**2) * offset
+                + 2.0 * across[:, j] * slides[:, j],
+            )
+        reach = _Reach(distance, speed, bend)
+        return _Links(poses, velocities, half, reach, angular, angular_change)
+
+    def _reaction(self, links: _Links) -> _Turn:
+        """The base's rotation at zero angular momentum.
+
+        I omega + l = 0, with the locked inertia I and the arms' angular momentum l relative to the
+        base, both about the centre of mass; their rates of change are bounded term by term.
+        """
+        masses, half = self._masses, links.half[:, 0]
+        share = masses / np.sum(masses)
+        centers, velocity, reach = links.reach(self._links, self._levers)
+        arms = centers - np.sum(share[:, None] * centers, axis=1, keepdims=True)
+        rotations = links.poses.rotations
+        inertias = rotations @ self._inertias @ np.swapaxes(rotations, -1, -2)
+        inertia, momentum = _locked(masses, inertias, arms, velocity, links.velocities.angular)
+        rate = np.asarray(-np.linalg.solve(inertia, momentum[..., None])[..., 0], np.float64)
+
+        spread, angular = self._most - self._least, links.angular
+        pull = (1.0 - 2.0 * share) * reach.speed + np.sum(share * reach.speed, 1, keepdims=True)
+        leverage = masses * (np.linalg.norm(arms, axis=-1) + links.half * pull)
+        inertia_change = np.sum(spread * angular + 2.0 * leverage * reach.speed, axis=1)
+        momentum_change = np.sum(
+            0.5 * spread * angular**2 + self._most * links.angular_change + leverage * reach.bend,
+            axis=1,
+        )
+        least = np.linalg.eigvalsh(inertia)[:, 0] - half * inertia_change
+        least = np.maximum(least, np.sum(self._least))
+        energy = np.sum(masses * reach.speed**2 + self._most * angular**2, axis=1)
+        now = np.linalg.norm(rate, axis=-1)
+        most = np.minimum(
+            now + half * (momentum_change + inertia_change * now) / least, np.sqrt(energy / least)
+        )
+        return _Turn(rate, most, (momentum_change + inertia_change * most) / least)
+
+    def _world(self, links: _Links, turn: _Turn, attitudes: Array, error: float) -> Travel:
+        """All that T needs but the base's translation."""
+        position, velocity, reach = links.reach(self._carriers, self._points)
+        velocity += cross(turn.rate[:, None], position)
+        most, length = turn.most[:, None], 2.0 * links.half
+        bend = (
+            (turn.change[:, None] + most**2) * reach.distance
+            + 2.0 * most * reach.speed
+            + reach.bend
+        )
+        slack = error * (2.0 * reach.distance + length * np.linalg.norm(velocity, axis=-1))
+        return Travel(
+            velocity @ np.swapaxes(attitude.matrix(attitudes), -1, -2),
+            most * reach.distance + reach.speed,
+            0.25 * length**2 * bend,
+            slack,
+            length[:, 0],
+            self._first,
+        )
+
+
+def _tightened(
+    position: Array, velocity: Array, half: Array, distance: Array, speed: Array, bend: Array
+) -> _Reach:
+    """Of the bounds along the arm and those from the values at the middle, the smaller each."""
+    speed = np.minimum(speed, np.linalg.norm(velocity, axis=-1) + half * bend)
+    distance = np.minimum(distance, np.linalg.norm(position, axis=-1) + half * speed)
+    return _Reach(distance, speed, bend)
+
+
+def _locked(
+    masses: Array, inertias: Array, arms: Array, velocity: Array, angular: Array
+) -> tuple[Array, Array]:
+    """Locked inertia (K, 3, 3) about the centre of mass and angular momentum (K, 3) of the arms."""
+    weighted = masses[:, None] * arms
+    spread = np.swapaxes(weighted, -1, -2) @ arms
+    trace = np.trace(spread, axis1=-2, axis2=-1)
+    inertia = np.sum(inertias, axis=1) + trace[:, None, None] * np.eye(3) - spread
+    momentum = np.sum(turned(inertias, angular) + cross(weighted, velocity), axis=1)
+    return inertia, momentum
+
+
+def _points(geometry: pin.GeometryObject) -> Array:
+    """(N, 3) points in the frame of the link that carries the shape, whose hull it fills.
+
+    Spheres and capsules lie around theirs at a constant distance.
+    """
+    shape, placement = geometry.geometry, geometry.placement
+    if isinstance(shape, coal.Sphere):
+        local = np.zeros((1, 3))
+    elif isinstance(shape, coal.Capsule):
+        local = np.array([[0.0, 0.0, -shape.halfLength], [0.0, 0.0, shape.halfLength]])
+    else:  # boxes and hulls: the corners of the box around them, along their own axes
+        shape.computeLocalAABB()
+        box = np.array([shape.aabb_local.min_, shape.aabb_local.max_])
+        local = np.array(list(product(*box.T)))
+    return np.asarray(local @ placement.rotation.T + placement.translation)
 
 
 class Swing(NamedTuple):
@@ -42,7 +333,9 @@ class Swing(NamedTuple):
 
 
 def swing(robot: SpaceRobot, joint_step: Array, joint_reach: Array, omega: float | None) -> Swing:
-    """Bound the speed of every point of each collision shape.
+    """Bound the speed of every point of each collision shape, at any time.
+
+    The recursion of `TravelBound` without its middle; Omega from the least kinetic energy alone.
 
     Args:
         robot: the robot.
