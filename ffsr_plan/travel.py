@@ -113,7 +113,13 @@ class _Links(NamedTuple):
 
 
 class TravelBound:
-    """The bound for one robot, ready for any motion of its joints."""
+    """The bound for one robot, ready for any motion of its joints.
+
+    Attributes:
+        points: (P, 3) the points that matter, shape by shape, in the frames of their links [m].
+        links: (P,) which link (numbered as in `kinematics`) carries each.
+        first: (g,) the first point of each shape.
+    """
 
     def __init__(self, robot: SpaceRobot) -> None:
         model = robot.model
@@ -124,7 +130,7 @@ class TravelBound:
         self._inertias = np.array([body.inertia for body in bodies])
         moments = np.maximum(np.linalg.eigvalsh(self._inertias), 0.0)
         self._least, self._most = moments[:, 0], moments[:, 2]
-        self._links = np.arange(len(bodies))
+        self._bodies = np.arange(len(bodies))
         # the axes of a joint and of the last turning one before it stand at a constant angle
         self._before = np.zeros(len(bodies), dtype=np.int64)
         for level in tree.levels:
@@ -137,9 +143,9 @@ class TravelBound:
         points = [_points(g) for g in robot.collision_model.geometryObjects]
         counts = np.array([len(p) for p in points], dtype=np.int64)
         carriers = [g.parentJoint - 1 for g in robot.collision_model.geometryObjects]
-        self._first = np.cumsum(counts) - counts
-        self._carriers = np.repeat(np.array(carriers, dtype=np.int64), counts)
-        self._points = np.concatenate([np.zeros((0, 3)), *points])
+        self.first = np.cumsum(counts) - counts
+        self.links = np.repeat(np.array(carriers, dtype=np.int64), counts)
+        self.points = np.concatenate([np.zeros((0, 3)), *points])
 
     def reacting(
         self,
@@ -206,15 +212,17 @@ class TravelBound:
             )
         )
         angular_now = np.linalg.norm(velocities.angular, axis=-1)
+        axes = turned(poses.rotations, tree.axes)
+        across_now = np.linalg.norm(cross(velocities.angular[:, tree.parents], axes), axis=-1)
         angular, angular_change, across = np.zeros((3, *rates.shape))
         distance, speed, bend = np.zeros((3, *rates.shape))
         for j in tree.levels:
             p = tree.parents[j]
             turning, offset = angular[:, p], offsets[:, j]
             # |w_p x s_j|: what the parent's rotation has across the joint's axis
-            across[:, j] = np.minimum(
-                turning, self._cosine[j] * across[:, self._before[j]] + self._sine[j] * turning
-            )
+            tilted = self._cosine[j] * across[:, self._before[j]] + self._sine[j] * turning
+            growing = across_now[:, j] + half * angular_change[:, p]
+            across[:, j] = np.minimum(np.minimum(turning, tilted), growing)
             angular_change[:, j] = angular_change[:, p] + across[:, j] * turns[:, j]
             angular[:, j] = np.minimum(
                 turning + turns[:, j], angular_now[:, j] + half * angular_change[:, j]
@@ -240,7 +248,7 @@ class TravelBound:
         """
         masses, half = self._masses, links.half[:, 0]
         share = masses / np.sum(masses)
-        centers, velocity, reach = links.reach(self._links, self._levers)
+        centers, velocity, reach = links.reach(self._bodies, self._levers)
         arms = centers - np.sum(share[:, None] * centers, axis=1, keepdims=True)
         rotations = links.poses.rotations
         inertias = rotations @ self._inertias @ np.swapaxes(rotations, -1, -2)
@@ -266,7 +274,7 @@ class TravelBound:
 
     def _world(self, links: _Links, turn: _Turn, attitudes: Array, error: float) -> Travel:
         """All that T needs but the base's translation."""
-        position, velocity, reach = links.reach(self._carriers, self._points)
+        position, velocity, reach = links.reach(self.links, self.points)
         velocity += cross(turn.rate[:, None], position)
         most, length = turn.most[:, None], 2.0 * links.half
         bend = (
@@ -281,7 +289,7 @@ class TravelBound:
             0.25 * length**2 * bend,
             slack,
             length[:, 0],
-            self._first,
+            self.first,
         )
 
 
