@@ -27,7 +27,8 @@ import pinocchio as pin
 from ffsr_plan import attitude
 from ffsr_plan.attitude import cross
 from ffsr_plan.inputs import Array, IntArray
-from ffsr_plan.kinematics import Poses, Tree, Velocities, turned
+from ffsr_plan.kinematics import turned
+from ffsr_plan.reach import Links, ReachBound
 from ffsr_plan.robot import SpaceRobot
 
 
@@ -64,17 +65,6 @@ class Travel(NamedTuple):
         return np.asarray(np.maximum.reduceat(points, self.first, axis=-1))
 
 
-class _Reach(NamedTuple):
-    """Bounds over each of K intervals on what moves relative to the base; n links or points."""
-
-    distance: Array
-    """(K, n) from the base origin [m]."""
-    speed: Array
-    """(K, n) [m]."""
-    bend: Array
-    """(K, n) acceleration [m]."""
-
-
 class _Turn(NamedTuple):
     """The base's rotation over each of K intervals."""
 
@@ -84,32 +74,6 @@ class _Turn(NamedTuple):
     """(K,) Omega."""
     change: Array
     """(K,) kappa."""
-
-
-class _Links(NamedTuple):
-    """The links over each of K intervals, relative to the base."""
-
-    poses: Poses
-    velocities: Velocities
-    half: Array
-    """(K, 1) half the length of the interval."""
-    origins: _Reach
-    angular: Array
-    """(K, n) bound on the angular speed [rad]."""
-    angular_change: Array
-    """(K, n) bound on the angular acceleration [rad]."""
-
-    def reach(self, links: IntArray, places: Array) -> tuple[Array, Array, _Reach]:
-        """Points at `places` (N, 3) of `links` (N,): where, how fast (K, N, 3), and bounds."""
-        arms = turned(self.poses.rotations[:, links], places)
-        position = self.poses.origins[:, links] + arms
-        velocity = self.velocities.linear[:, links] + cross(self.velocities.angular[:, links], arms)
-        length = np.linalg.norm(places, axis=-1)
-        angular = self.angular[:, links]
-        bend = self.origins.bend[:, links] + (self.angular_change[:, links] + angular**2) * length
-        distance = self.origins.distance[:, links] + length
-        speed = self.origins.speed[:, links] + angular * length
-        return position, velocity, _tightened(position, velocity, self.half, distance, speed, bend)
 
 
 class TravelBound:
@@ -123,7 +87,7 @@ class TravelBound:
 
     def __init__(self, robot: SpaceRobot) -> None:
         model = robot.model
-        self._tree = tree = Tree(model)
+        self._reach = ReachBound(model)
         bodies = list(model.inertias)[1:]
         self._masses = np.array([body.mass for body in bodies])
         self._levers = np.array([body.lever for body in bodies])
@@ -131,15 +95,6 @@ class TravelBound:
         moments = np.maximum(np.linalg.eigvalsh(self._inertias), 0.0)
         self._least, self._most = moments[:, 0], moments[:, 2]
         self._bodies = np.arange(len(bodies))
-        # the axes of a joint and of the last turning one before it stand at a constant angle
-        self._before = np.zeros(len(bodies), dtype=np.int64)
-        for level in tree.levels:
-            parents = tree.parents[level]
-            self._before[level] = np.where(tree.prismatic[parents], self._before[parents], parents)
-        neutral = tree.poses(np.zeros((1, robot.nd))).rotations[0]
-        axes = turned(neutral, tree.axes)
-        self._cosine = np.abs(np.sum(axes * axes[self._before], axis=1))
-        self._sine = np.linalg.norm(cross(axes, axes[self._before]), axis=1)
         points = [_points(g) for g in robot.collision_model.geometryObjects]
         counts = np.array([len(p) for p in points], dtype=np.int64)
         carriers = [g.parentJoint - 1 for g in robot.collision_model.geometryObjects]
@@ -165,7 +120,7 @@ class TravelBound:
             error: bound on the angle [rad] by which any attitude may be wrong, these and those at
                 which clearances are measured.
         """
-        links = self._over(joint_values, joint_rates, lengths)
+        links = self._reach.over(joint_values, joint_rates, lengths)
         return self._world(links, self._reaction(links), attitudes, error)
 
     def held(
@@ -180,7 +135,7 @@ class TravelBound:
 
         The other arguments are those of `reacting`.
         """
-        links = self._over(joint_values, joint_rates, lengths)
+        links = self._reach.over(joint_values, joint_rates, lengths)
         most = np.sqrt(np.sum(turn**2, axis=-1))
         turning = _Turn(turn, most, np.zeros_like(most))
         return self._world(links, turning, attitudes, 0.0)
@@ -191,56 +146,13 @@ class TravelBound:
         Two shapes of one robot keep apart where their distances at an interval's ends sum to more
         than the sum of their two bounds.
         """
-        links = self._over(joint_values, joint_rates, lengths)
+        links = self._reach.over(joint_values, joint_rates, lengths)
         still = _Turn(*(np.zeros((len(lengths), *rest)) for rest in ((3,), (), ())))
         identity = np.broadcast_to(attitude.IDENTITY, (len(lengths), 4))
         travel = self._world(links, still, identity, 0.0)
         return travel.bounds(np.arange(len(lengths)), np.zeros((len(lengths), 3)))
 
-    def _over(self, joint_values: Array, joint_rates: Array, lengths: Array) -> _Links:
-        """Bounds on the links' motion relative to the base, from the base outwards."""
-        tree, half = self._tree, 0.5 * lengths[:, None]
-        poses = tree.poses(joint_values)
-        velocities = tree.velocities(poses, joint_rates)
-        rates = np.concatenate([np.zeros_like(half), np.abs(joint_rates)], axis=1)
-        turns, slides = rates * ~tree.prismatic, rates * tree.prismatic
-        # a convex function of the joint value: largest at one of the interval's ends
-        offsets = np.maximum(
-            *(
-                np.linalg.norm(tree.offsets(joint_values + end * half * joint_rates), axis=-1)
-                for end in (-1.0, 1.0)
-            )
-        )
-        angular_now = np.linalg.norm(velocities.angular, axis=-1)
-        axes = turned(poses.rotations, tree.axes)
-        across_now = np.linalg.norm(cross(velocities.angular[:, tree.parents], axes), axis=-1)
-        angular, angular_change, across = np.zeros((3, *rates.shape))
-        distance, speed, bend = np.zeros((3, *rates.shape))
-        for j in tree.levels:
-            p = tree.parents[j]
-            turning, offset = angular[:, p], offsets[:, j]
-            # |w_p x s_j|: what the parent's rotation has across the joint's axis
-            tilted = self._cosine[j] * across[:, self._before[j]] + self._sine[j] * turning
-            growing = across_now[:, j] + half * angular_change[:, p]
-            across[:, j] = np.minimum(np.minimum(turning, tilted), growing)
-            angular_change[:, j] = angular_change[:, p] + across[:, j] * turns[:, j]
-            angular[:, j] = np.minimum(
-                turning + turns[:, j], angular_now[:, j] + half * angular_change[:, j]
-            )
-            distance[:, j], speed[:, j], bend[:, j] = _tightened(
-                poses.origins[:, j],
-                velocities.linear[:, j],
-                half,
-                distance[:, p] + offset,
-                speed[:, p] + turning * offset + slides[:, j],
-                bend[:, p]
-                + (angular_change[:, p] + turning**2) * offset
-                + 2.0 * across[:, j] * slides[:, j],
-            )
-        reach = _Reach(distance, speed, bend)
-        return _Links(poses, velocities, half, reach, angular, angular_change)
-
-    def _reaction(self, links: _Links) -> _Turn:
+    def _reaction(self, links: Links) -> _Turn:
         """The base's rotation at zero angular momentum.
 
         I omega + l = 0, with the locked inertia I and the arms' angular momentum l relative to the
@@ -272,7 +184,7 @@ class TravelBound:
         )
         return _Turn(rate, most, (momentum_change + inertia_change * most) / least)
 
-    def _world(self, links: _Links, turn: _Turn, attitudes: Array, error: float) -> Travel:
+    def _world(self, links: Links, turn: _Turn, attitudes: Array, error: float) -> Travel:
         """All that T needs but the base's translation."""
         position, velocity, reach = links.reach(self.links, self.points)
         velocity += cross(turn.rate[:, None], position)
@@ -291,15 +203,6 @@ class TravelBound:
             length[:, 0],
             self.first,
         )
-
-
-def _tightened(
-    position: Array, velocity: Array, half: Array, distance: Array, speed: Array, bend: Array
-) -> _Reach:
-    """Of the bounds along the arm and those from the values at the middle, the smaller each."""
-    speed = np.minimum(speed, np.linalg.norm(velocity, axis=-1) + half * bend)
-    distance = np.minimum(distance, np.linalg.norm(position, axis=-1) + half * speed)
-    return _Reach(distance, speed, bend)
 
 
 def _locked(
