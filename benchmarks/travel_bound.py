@@ -10,6 +10,7 @@ import argparse
 import sys
 import time
 from collections.abc import Iterator
+from fractions import Fraction
 from itertools import product
 from pathlib import Path
 from typing import NamedTuple
@@ -160,7 +161,8 @@ class Ratios:
             for b in range(2):
                 sharp, simple = np.concatenate(self.cells[s, h, b], axis=1)
                 numbers += [*np.quantile(sharp, (0.5, 0.95)), np.median(simple)]
-            yield [f"{STEPS[s]:g}", f"1/{1 / LENGTHS[h]:g}", *(f"{x:.3f}" for x in numbers)]
+            length = str(Fraction(LENGTHS[h]))
+            yield [f"{STEPS[s]:g}", length, *(f"{x:.3f}" for x in numbers)]
 
     def table(self) -> str:
         """Medians and 95th percentiles by joint step and length of the interval."""
