@@ -21,7 +21,7 @@ from scenes import RESULTS, publish, random_problem, table
 
 import ffsr_plan as fp
 from ffsr_plan.bodies import Bodies, pose, sphere_distance
-from ffsr_plan.collision import obstacle_query
+from ffsr_plan.collision import ObstacleQuery
 
 FIRST_SEED = 2000
 DEFAULT, FINE = 0.01, 0.002  # of the plane's diagonal between two validity checks
@@ -42,7 +42,7 @@ class Plane:
         self.along = float(np.linalg.norm(problem.travel))
         self.window = axis.half_count * axis.spacing
         self.bodies = Bodies(problem.robot.urdf)
-        self.query = obstacle_query(problem.robot, problem.scene)
+        self.query = ObstacleQuery(problem.robot, problem.scene)
         # OMPL asks point by point: from a table, lest Python's share of a query slow it down
         self.cells = 20_000
         points = np.linspace(0.0, self.along, self.cells + 1)

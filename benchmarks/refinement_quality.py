@@ -70,7 +70,7 @@ def examine(seed, delta, finest):
     except fp.NoPath:
         return None, min(rivals.values()) < np.inf
     lattice = fp.LayeredLattice(problem)
-    prover = Prover(lattice.nominal)
+    prover = Prover(lattice.nominal, problem.scene, problem.tolerance)
     begin = time.process_time()
     refined(before, lattice, prover)
     spent = 1e3 * (time.process_time() - begin)

@@ -10,7 +10,7 @@ import pytest
 from reference import Reference, record
 
 import ffsr_plan as fp
-from ffsr_plan.collision import obstacle_query
+from ffsr_plan.collision import ObstacleQuery
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.reaction import Reaction
 from ffsr_plan.roadmap import Roadmap
@@ -48,7 +48,7 @@ def test_reference_compute_distances(benchmark, reference):
 def test_node_clearances(benchmark, problem, reference):
     """All node clearances of the lattice, its nominal motion given."""
     lattice = LayeredLattice(problem)
-    query = obstacle_query(problem.robot, problem.scene)
+    query = ObstacleQuery(problem.robot, problem.scene)
 
     def evaluate():
         inner = [query.distances(lattice.layer(i)) for i in range(1, lattice.divisions)]

@@ -77,12 +77,12 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
         if mode == "free-flying":
             quats = reaction.rotation(every, times.ravel())
             at_middle = reaction.rotation(edge, middles)
-            travel = bound.reacting(now, rates, at_middle, lengths, 0.0)
+            travel = bound.reacting(now, rates, at_middle, lengths, 0.0).world
             omega = None
         else:
             quats = attitude.exp(times.reshape(-1, 1) * turns[every])
             at_middle = attitude.exp(middles[:, None] * turns[edge])
-            travel = bound.held(now, rates, at_middle, lengths, turns[edge])
+            travel = bound.held(now, rates, at_middle, lengths, turns[edge]).world
             omega = np.linalg.norm(turns, axis=1)
         points = rng.integers(travel.speed.shape[1], size=len(edge))
         follows = -travel.velocity[np.arange(len(edge)), points]

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 from ffsr_plan import momentum
 from ffsr_plan.axes import Axis, Lattice
-from ffsr_plan.collision import clearance
+from ffsr_plan.collision import Clearance, clearance
 from ffsr_plan.colony import AntSystem, MaxMinAntSystem
+from ffsr_plan.edge_proof import EdgeProof, certify_edge
 from ffsr_plan.errors import (
     FfsrPlanError,
     GoalInCollision,
@@ -40,6 +41,8 @@ __version__ = "0.1.0"
 __all__ = [
     "AntSystem",
     "Axis",
+    "Clearance",
+    "EdgeProof",
     "FfsrPlanError",
     "GoalInCollision",
     "InvalidInput",
@@ -56,6 +59,7 @@ __all__ = [
     "Scene",
     "SpaceRobot",
     "StartInCollision",
+    "certify_edge",
     "clearance",
     "load_robot",
     "load_scenario",

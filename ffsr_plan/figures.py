@@ -33,10 +33,12 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
 
     problem, view = plan.problem, _view(plan)
     figure, axes = _new_figure(9.0, 4.6)
+    near = plan.obstacles_near(0.8 if len(problem.scene) > 60 else np.inf)
     for k, (center, radius) in enumerate(
         zip(problem.scene.centers @ view.T, problem.scene.radii, strict=True)
     ):
-        axes.add_patch(Circle(center, radius, facecolor=_OBSTACLE, edgecolor="#5c6168", zorder=2))
+        drawn = {"zorder": 2} if near[k] else {"zorder": 1, "alpha": 0.12}
+        axes.add_patch(Circle(center, radius, facecolor=_OBSTACLE, edgecolor="#5c6168", **drawn))
         if len(problem.scene) <= 30:
             axes.annotate(str(k), center, ha="center", va="center", color="white", zorder=3)
     segments, strength = _trails(plan, view)
@@ -59,7 +61,10 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
         axes.add_collection(outline)
     track = plan.at(np.linspace(0.0, 1.0, 401))[:, :3] @ view.T
     axes.plot(*track.T, color=_PATH, lw=1.8, zorder=6, label="base origin")
-    axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)
+    if not near.all():
+        axes.plot([], [], "o", color=_OBSTACLE, label="obstacles near the motion")
+        axes.plot([], [], "o", color=_OBSTACLE, alpha=0.2, label="others")
+    axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
     axes.set_aspect("equal")
     axes.autoscale_view()
     axes.margins(0.03)
@@ -75,11 +80,11 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
 
 def clearance_figure(plan: Plan, samples_per_edge: int = 20) -> Figure:
     """Least link-to-sphere distance along the motion, nodes marked."""
-    from ffsr_plan.collision import obstacle_query
+    from ffsr_plan.collision import ObstacleQuery
 
     m = plan.problem.lattice.divisions
     s = np.linspace(0.0, 1.0, m * samples_per_edge + 1)
-    query = obstacle_query(plan.problem.robot, plan.problem.scene)
+    query = ObstacleQuery(plan.problem.robot, plan.problem.scene)
     figure, axes = _new_figure(7.0, 3.2)
     axes.plot(s, query.distances(plan.at(s)), color=_PATH, lw=1.5, label="along the motion")
     axes.plot(np.arange(m + 1) / m, plan.clearances, "o", ms=3.5, color="#3b4252", label="nodes")

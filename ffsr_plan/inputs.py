@@ -17,7 +17,10 @@ Flags = NDArray[np.bool_]
 States = NDArray[np.int8]
 
 
-_HUGE = 1e9  # metres or radians; beyond that distances lose their millimetres
+_HUGE = 1e9  # metres or radians
+FARTHEST = 1e5
+"""Most metres of any coordinate in the world: farther out, floating-point numbers could not tell
+apart what `edges.ROUNDING` allows for."""
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 
 
@@ -27,10 +30,12 @@ def frozen(array: AnyArray) -> AnyArray:
     return array
 
 
-def finite_array(what: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
+def finite_array(
+    what: str, value: ArrayLike, shape: tuple[int, ...], at_most: float = _HUGE
+) -> Array:
     """A read-only float copy of `value`; -1 in `shape` stands for any length."""
     wanted = "x".join("N" if n < 0 else str(n) for n in shape)
-    allowed = f"finite numbers of at most {_HUGE:g}, of shape ({wanted})"
+    allowed = f"finite numbers of at most {at_most:g}, of shape ({wanted})"
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
@@ -42,7 +47,7 @@ def finite_array(what: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     )
     if not fits:
         raise InvalidInput(f"{what} (shape {array.shape})", value, allowed)
-    if not np.all(np.abs(array) <= _HUGE):  # NaN fails too
+    if not np.all(np.abs(array) <= at_most):  # NaN fails too
         raise InvalidInput(what, value, allowed)
     return frozen(array)
 

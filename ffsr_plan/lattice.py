@@ -78,7 +78,7 @@ class LayeredLattice:
         progress = np.arange(lattice.divisions + 1) / lattice.divisions
         along = problem.start[:3] + progress[:, None] * problem.travel
         along[-1] = problem.goal[:3]
-        self.nominal = Motion(problem, along)
+        self.nominal = Motion(problem.robot, problem.mode, problem.start, problem.goal, along)
 
     @property
     def divisions(self) -> int:

@@ -13,37 +13,59 @@ import numpy as np
 
 from ffsr_plan import attitude
 from ffsr_plan.inputs import Array, IntArray, frozen
-from ffsr_plan.problem import Problem
 from ffsr_plan.reaction import Reaction
+from ffsr_plan.robot import SpaceRobot
+
+MODES = ("free-flying", "attitude-held")
 
 
 class Motion:
     """Configurations along edges 0 .. m-1, each run from time 0 to 1.
 
     Attributes:
+        robot: the robot.
+        mode: one of `MODES`.
         positions: (m + 1, 3) base origin at the corners, world [m].
         joint_values: (m + 1, nd) at the corners [rad or m].
         attitudes: (m + 1, 4) base attitude at the corners (xyzw), reaction included.
     """
 
-    def __init__(self, problem: Problem, positions: Array) -> None:
-        """The motion of `problem` through base positions (m + 1, 3) of one's choice."""
-        self.problem = problem
-        divisions = problem.lattice.divisions
-        progress = np.arange(divisions + 1) / divisions
-        begin = problem.robot.joint_values(problem.start)
+    def __init__(
+        self, robot: SpaceRobot, mode: str, start: Array, goal: Array, positions: Array
+    ) -> None:
+        """The motion from `start` to `goal` (nq,) through base positions (m + 1, 3).
+
+        The joints move steadily from start to goal, continuous ones the shorter way round. The
+        goal's attitude counts in the mode `attitude-held` only.
+        """
+        self.robot, self.mode = robot, mode
+        self._start, self._goal = start[3:7], goal[3:7]
+        self._progress = np.arange(len(positions)) / (len(positions) - 1)
+        travel = robot.joint_change(start, goal)
         self.positions = frozen(np.array(positions, dtype=np.float64))
-        self.joint_values = frozen(begin + progress[:, None] * problem.joint_travel)
-        self.attitudes = frozen(self._attitudes(progress))
+        self.joint_values = frozen(robot.joint_values(start) + self._progress[:, None] * travel)
+        self.attitudes = frozen(self._attitudes(self._progress))
 
     @property
-    def _reacts(self) -> bool:
-        return self.problem.mode == "free-flying"
+    def edges(self) -> int:
+        """m, their number."""
+        return len(self.positions) - 1
+
+    @property
+    def reacts(self) -> bool:
+        """Whether the attitude follows from the arms' motion."""
+        return self.mode == "free-flying"
 
     @cached_property
     def reaction(self) -> Reaction:
         """The base rotation that the joint path, one straight segment, brings about."""
-        return Reaction(self.problem.robot, self.joint_values[[0, -1]])
+        return Reaction(self.robot, self.joint_values[[0, -1]])
+
+    @property
+    def turn(self) -> Array:
+        """(3,) angular velocity of a base that does not react, base axes [rad per edge]."""
+        whole = attitude.log(attitude.multiply(attitude.inverse(self._start), self._goal))
+        return whole / self.edges
 
     def displaced(self, offsets: Array) -> Motion:
         """The same motion with the base displaced by (m + 1, 3) [m] at the corners."""
@@ -53,20 +75,19 @@ class Motion:
 
     def configurations(self) -> Array:
         """(m + 1, nq) configurations at the corners."""
-        return self.problem.robot.assemble(self.positions, self.attitudes, self.joint_values)
+        return self.robot.assemble(self.positions, self.attitudes, self.joint_values)
 
     def at(self, edge: IntArray, time: Array) -> Array:
         """(N, nq) configurations on `edge` (N,) at `time` (N,) in [0, 1]."""
         t = time[:, None]
         position = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
         joints = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
-        quat = self._attitudes((edge + time) / self.problem.lattice.divisions)
-        return self.problem.robot.assemble(position, quat, joints)
+        quat = self._attitudes((edge + time) / self.edges)
+        return self.robot.assemble(position, quat, joints)
 
     def _attitudes(self, progress: Array) -> Array:
         """(N, 4) at path parameters (N,): nodes differ in translation only, which turns nothing."""
-        start, goal = self.problem.start[3:7], self.problem.goal[3:7]
-        if not self._reacts:
-            return attitude.slerp(start, goal, progress)
+        if not self.reacts:
+            return attitude.slerp(self._start, self._goal, progress)
         turned = self.reaction.rotation(np.zeros(len(progress), dtype=np.int64), progress)
-        return attitude.multiply(start, turned)
+        return attitude.multiply(self._start, turned)

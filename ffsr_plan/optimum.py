@@ -15,13 +15,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from ffsr_plan.colony.compiling import first_call
 from ffsr_plan.colony.records import History, Search, Trails, Watch
+from ffsr_plan.compiling import call
 from ffsr_plan.errors import PlanningError
 from ffsr_plan.inputs import Array, IntArray, States, frozen
 from ffsr_plan.roadmap import Roadmap
-
-_REFUSED = -1
 
 
 @dataclass(frozen=True)
@@ -65,7 +63,7 @@ def lattice_optimum(roadmap: Roadmap) -> IntArray:
             return int(news[0]) - 1
         if roadmap.prove_path(path):
             return None
-        return first_refused(roadmap.status, path)
+        return int(roadmap.refused_layers(path)[0])
 
     edge_costs = roadmap.edge_costs()[None]
     path = lazy_shortest_path(
@@ -104,8 +102,7 @@ def lazy_shortest_path(
     costs[0, origin] = 0.0
     first = 0
     while True:
-        with first_call(extend):
-            extend(first, edge_costs, node_costs, status, costs, before)
+        call(extend, first, edge_costs, node_costs, status, costs, before)
         if not np.isfinite(costs[m, origin]):
             return None
         path = np.empty(m + 1, dtype=np.int64)
@@ -116,8 +113,3 @@ def lazy_shortest_path(
         if again is None:
             return path
         first = again
-
-
-def first_refused(status: States, path: IntArray) -> int:
-    """The first layer on which a path leaves by a refused edge."""
-    return int(np.argmax(status[np.arange(len(status)), path[:-1], path[1:]] == _REFUSED))

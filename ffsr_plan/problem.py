@@ -11,10 +11,10 @@ from ffsr_plan.attitude import angle_between
 from ffsr_plan.axes import Lattice
 from ffsr_plan.errors import InvalidInput
 from ffsr_plan.inputs import Array, frozen, number, one_of
+from ffsr_plan.motion import MODES
 from ffsr_plan.robot import SpaceRobot
 from ffsr_plan.scene import Scene
 
-MODES = ("free-flying", "attitude-held")
 _SAME = 1e-12  # below this, two places or joint values count as one
 
 
@@ -110,11 +110,7 @@ class Problem:
     @property
     def joint_travel(self) -> Array:
         """(nd,) change of the joint values [rad or m], continuous joints the shorter way round."""
-        robot = self.robot
-        change = robot.joint_values(self.goal) - robot.joint_values(self.start)
-        endless = np.isinf(robot.upper)
-        wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
-        return frozen(np.where(endless, wrapped, change))
+        return frozen(self.robot.joint_change(self.start, self.goal))
 
     @property
     def turn(self) -> float:

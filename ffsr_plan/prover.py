@@ -1,4 +1,4 @@
-"""`Prover`: clearances and proofs along edges of one problem, for any offsets of the base.
+"""`Prover`: clearances and proofs along edges of one motion, for any offsets of the base.
 
 An edge runs from one layer to the next; its ends are displaced from the nominal motion by offsets
 of one's choice. The lattice asks for its nodes, the refinement for points between them.
@@ -6,45 +6,41 @@ of one's choice. The lattice asks for its nodes, the refinement for points betwe
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
-from ffsr_plan.collision import obstacle_query, self_query
+from ffsr_plan import attitude
+from ffsr_plan.collision import Nearest, ObstacleQuery, SelfQuery
+from ffsr_plan.edge_travel import EdgeTravel
 from ffsr_plan.edges import ROUNDING, Verdict, certify, clearance_bound
 from ffsr_plan.errors import GoalInCollision, NoPath, StartInCollision
-from ffsr_plan.inputs import Array, IntArray, frozen
+from ffsr_plan.inputs import Array, IntArray
 from ffsr_plan.motion import Motion
-from ffsr_plan.travel import swing
+from ffsr_plan.placements import Placements, shape_placements
+from ffsr_plan.scene import Scene
 
 _SLACK = 0.05  # between the clearance proven along a path and the least one met, relative
+_STILL = np.zeros(3)
 
 
 class Prover:
     """Asks Coal, and concludes.
 
     Attributes:
-        swing: bound on the distance [m] that any point travels over an edge besides the base's own.
+        speeds: (m,) bound on the distance [m] that any point travels over an edge of each layer
+            besides the base's own.
+        rounding: travel [m] that is added to every bound.
     """
 
-    def __init__(self, nominal: Motion) -> None:
-        problem = nominal.problem
-        self._problem, self._motion = problem, nominal
-        self._obstacles = obstacle_query(problem.robot, problem.scene)
-        self._self = self_query(problem.robot)
-        self._corners = nominal.configurations()
-        self._between: dict[float, Array] = {}
-        values = np.abs(nominal.joint_values)
-        divisions = problem.lattice.divisions
-        self._speeds = swing(
-            problem.robot,
-            problem.joint_travel / divisions,
-            np.maximum(values[0], values[-1]),
-            None if problem.mode == "free-flying" else problem.turn / divisions,
-        )
-        self.swing = float(np.max(self._speeds.world, initial=0.0))
+    def __init__(self, nominal: Motion, scene: Scene, tolerance: float) -> None:
+        self._motion, self._tolerance = nominal, tolerance
+        self._obstacles, self._self = ObstacleQuery(nominal.robot, scene), SelfQuery(nominal.robot)
+        self._travel = EdgeTravel(nominal)
+        self._placed: dict[float, Placements] = {}
+        self._corners = shape_placements(nominal.robot, nominal.configurations())
+        self.speeds = self._travel.speeds
+        self.rounding = ROUNDING + self._travel.slack
 
     @property
     def queries(self) -> int:
@@ -53,19 +49,16 @@ class Prover:
 
     def clearances(self, layers: IntArray, offsets: Array) -> Array:
         """(k,) clearances [m] on layers (k,) at offsets (k, 3)."""
-        q = self._corners[layers]
-        q[:, :3] += offsets
-        return self._obstacles.distances(q)
+        return self._obstacles.distances_at(self._corners, layers, offsets)
 
-    def base_travel(self, layer: int, tail: Array, head: Array) -> Array:
-        """Distance [m] that the base origin covers from offsets `tail` to `head` (..., 3)."""
-        along = self._motion.positions[layer + 1] - self._motion.positions[layer]
-        return np.asarray(np.linalg.norm(along + head - tail, axis=-1))
+    def base_step(self, layer: int, tail: Array, head: Array) -> Array:
+        """(..., 3) what the base origin covers from offsets `tail` to `head` (..., 3) [m]."""
+        along: Array = self._motion.positions[layer + 1] - self._motion.positions[layer]
+        return along + head - tail
 
     def certify(self, layer: int, tail: Array, head: Array, ends: tuple[float, float]) -> Verdict:
         """The verdict on the edge from offset `tail` to `head` (3,), clearances `ends` [m]."""
-        speed = float(self.base_travel(layer, tail, head)) + self.swing
-        return certify(self._along(layer, tail, head), ends, speed, self._problem.tolerance)
+        return certify(_ObstacleEdge(self, layer, tail, head), ends, self._tolerance)
 
     def least_clearance(self, offsets: Array, clearances: Array) -> float:
         """Proven lower bound on the clearance [m] all along a path whose edges are free.
@@ -75,29 +68,30 @@ class Prover:
             clearances: (m + 1,) at the nodes [m].
         """
         bound = met = float(np.min(clearances))
-        for layer, (first, last) in enumerate(pairwise(map(float, clearances))):
-            tail, head = offsets[layer], offsets[layer + 1]
-            speed = float(self.base_travel(layer, tail, head)) + self.swing
-            along = self._along(layer, tail, head)
-            here, met = clearance_bound(along, (first, last), speed, met, _SLACK)
+        for layer, ends in enumerate(pairwise(map(float, clearances))):
+            edge = _ObstacleEdge(self, layer, offsets[layer], offsets[layer + 1])
+            here, met = clearance_bound(edge, ends, met, _SLACK)
             bound = min(bound, here)
         return bound
 
-    def nearest_obstacle(self, layer: int, tail: Array, head: Array, time: float) -> int | str:
-        """The obstacle nearest to the robot at a time on an edge."""
-        q = self._at(layer, time).copy()
-        q[:3] += (1.0 - time) * tail + time * head
-        return self._obstacles.nearest(q).other
+    def nearest(self, layer: int, tail: Array, head: Array, time: float) -> Nearest:
+        """The nearest link and obstacle at a time on an edge."""
+        edge = _ObstacleEdge(self, layer, tail, head)
+        return self._obstacles.nearest_at(self.placed(time), layer, edge.offset(time))
+
+    def nearest_links(self, layer: int, time: float) -> Nearest:
+        """The nearest two links that must not touch, at a time on an edge."""
+        return self._self.nearest(self._posture(layer, time))
 
     def check_ends(self) -> None:
         """Raise `StartInCollision` or `GoalInCollision`, with link, obstacle and depth."""
-        for q, error in (
-            (self._corners[0], StartInCollision),
-            (self._corners[-1], GoalInCollision),
-        ):
-            for query in (self._obstacles, self._self):
-                if query.distance(q) <= 0.0:
-                    near = query.nearest(q)
+        for layer, error in ((0, StartInCollision), (self._motion.edges, GoalInCollision)):
+            found = (
+                self._obstacles.nearest_at(self._corners, layer, _STILL),
+                self.nearest_links(layer, 0.0),
+            )
+            for near in found:
+                if near.distance <= 0.0:
                     raise error(near.link, near.other, -near.distance)
 
     def check_self_collision(self) -> None:
@@ -106,48 +100,102 @@ class Prover:
         Raises:
             NoPath: with the first edge on which two links come too close.
         """
-        if self._self.empty:
-            return
-        in_base = self._speeds.in_base
-        pairs = self._problem.robot.collision_model.collisionPairs
-        speed = max(float(in_base[p.first] + in_base[p.second]) for p in pairs)
-        ends = self._self.distances(self._corners)
-        for layer in range(len(ends) - 1):
-            if ends[layer] + ends[layer + 1] > speed + ROUNDING:
-                continue
-            verdict = certify(
-                partial(self._self_distance, layer),
-                (float(ends[layer]), float(ends[layer + 1])),
-                speed,
-                self._problem.tolerance,
-            )
+        for layer, verdict in enumerate(self.self_verdicts()):
             if not verdict.free:
-                near = self._self.nearest(self._at(layer, verdict.time))
-                raise NoPath(layer + 1, (near.link, near.other), len(ends) - 1)
+                near = self.nearest_links(layer, verdict.time)
+                raise NoPath(layer + 1, (near.link, str(near.other)), self._motion.edges)
 
-    def _along(self, layer: int, tail: Array, head: Array) -> Callable[[float], float]:
-        def clearance_at(time: float) -> float:
-            q = self._at(layer, time).copy()
-            q[:3] += (1.0 - time) * tail + time * head
-            return self._obstacles.distance(q)
+    def self_verdicts(self) -> list[Verdict]:
+        """(m) whether the links keep clear of each other on each edge."""
+        if self._self.empty:
+            return [Verdict(True, np.inf, 0.0, 0)] * self._motion.edges
+        edges = [_SelfEdge(self, layer) for layer in range(self._motion.edges)]
+        starts = [edge.clearance(0.0) for edge in edges]
+        starts.append(edges[-1].clearance(1.0))
+        return [
+            certify(edge, ends, self._tolerance)
+            for edge, ends in zip(edges, pairwise(starts), strict=True)
+        ]
 
-        return clearance_at
+    def placed(self, time: float) -> Placements:
+        """All shapes on every edge of the nominal motion at one time; kept, as halving asks again.
 
-    def _self_distance(self, layer: int, time: float) -> float:
-        return self._self.distance(self._at(layer, time))
-
-    def _at(self, layer: int, time: float) -> Array:
-        """Nominal configuration on an edge.
-
-        Halving asks for the same few times on all edges: computed for all layers at once, and kept;
-        a time that is asked for brings its fellows down to sixteenths along.
+        So do other edges for the times at the same level of halving: those come along.
         """
-        if time not in self._between:
-            coarse = np.arange(1, 16) / 16.0
-            times = coarse if time in coarse else np.array([time])
-            layers, edges = np.arange(len(self._corners) - 1), len(self._corners) - 1
-            found = self._motion.at(np.tile(layers, len(times)), np.repeat(times, edges))
-            for t, q in zip(times.tolist(), found.reshape(len(times), edges, -1), strict=True):
-                self._between[t] = frozen(q)
-        at: Array = self._between[time][layer]
-        return at
+        if time not in self._placed:
+            times = _of_same_level(time)
+            edges = self._motion.edges
+            q = self._motion.at(np.tile(np.arange(edges), len(times)), np.repeat(times, edges))
+            frames = shape_placements(self._motion.robot, q).frames
+            parts = frames.reshape(len(times), edges, *frames.shape[1:])
+            self._placed |= zip(times.tolist(), map(Placements, parts), strict=True)
+        return self._placed[time]
+
+    def _posture(self, layer: int, time: float) -> Array:
+        """(nq,) joints at a time on an edge, the base anywhere."""
+        begin, end = self._motion.joint_values[[layer, layer + (time > 0.0)]]
+        joints = (1.0 - time) * begin + time * end
+        return self._motion.robot.assemble(_STILL, attitude.IDENTITY, joints)
+
+
+def _of_same_level(time: float) -> Array:
+    """The dyadic times that halving reaches in as many steps as `time`; beyond 1/16 it alone."""
+    for parts in (1, 2, 4, 8, 16):
+        if (time * parts).is_integer():
+            step = 1.0 / parts
+            return np.arange(step, 1.0, 2.0 * step) if parts > 1 else np.array([time])
+    return np.array([time])
+
+
+class _ObstacleEdge:
+    """An edge among the obstacles; its parts are the collision shapes."""
+
+    def __init__(self, prover: Prover, layer: int, tail: Array, head: Array) -> None:
+        self._prover, self._layer = prover, layer
+        self._tail, self._head = tail, head
+        self._step = prover.base_step(layer, tail, head)
+        self._parts: dict[float, Array] = {}
+        self.rounding = prover.rounding
+        self.speed = float(np.linalg.norm(self._step) + prover.speeds[layer])
+
+    def offset(self, time: float) -> Array:
+        return (1.0 - time) * self._tail + time * self._head
+
+    def clearance(self, time: float) -> float:
+        query, placed = self._prover._obstacles, self._prover.placed(time)
+        return float(
+            query.distances_at(placed, np.array([self._layer]), self.offset(time)[None])[0]
+        )
+
+    def parts(self, time: float) -> Array:
+        if time not in self._parts:
+            query, placed = self._prover._obstacles, self._prover.placed(time)
+            self._parts[time] = query.links_at(placed, self._layer, self.offset(time))
+        return self._parts[time]
+
+    def travel(self, begin: float, end: float) -> Array:
+        return self._prover._travel.bounds(self._layer, begin, end, self._step)
+
+
+class _SelfEdge:
+    """An edge of the joints alone; its parts are the pairs of links that must not touch."""
+
+    def __init__(self, prover: Prover, layer: int) -> None:
+        self._prover, self._layer = prover, layer
+        self._pairs = prover._self.pairs
+        self._parts: dict[float, Array] = {}
+        self.rounding = ROUNDING
+        self.speed = 2.0 * float(prover._travel.speeds_in_base[layer])
+
+    def clearance(self, time: float) -> float:
+        return self._prover._self.distance(self._prover._posture(self._layer, time))
+
+    def parts(self, time: float) -> Array:
+        if time not in self._parts:
+            posture = self._prover._posture(self._layer, time)
+            self._parts[time] = self._prover._self.distances(posture)
+        return self._parts[time]
+
+    def travel(self, begin: float, end: float) -> Array:
+        each = self._prover._travel.bounds_in_base(self._layer, begin, end)
+        return np.asarray(each[self._pairs].sum(axis=1))

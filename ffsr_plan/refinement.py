@@ -40,7 +40,7 @@ def refine(plan: Plan) -> Plan:
     if not isinstance(plan, Plan):
         raise InvalidInput("plan", plan, "a Plan")
     lattice = LayeredLattice(plan.problem)
-    prover = Prover(lattice.nominal)
+    prover = Prover(lattice.nominal, plan.problem.scene, plan.problem.tolerance)
     better = refined(plan, lattice, prover)
     offsets = better.configurations[:, :3] - lattice.nominal.positions
     least = prover.least_clearance(offsets, better.clearances)

@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from ffsr_plan.attitude import to_angles
 from ffsr_plan.colony import History, Planner, Trails
 from ffsr_plan.errors import InvalidInput
-from ffsr_plan.inputs import Array, IntArray, finite_array
+from ffsr_plan.inputs import Array, Flags, IntArray, finite_array
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.motion import Motion
+from ffsr_plan.placements import shape_placements
 from ffsr_plan.problem import Problem
 from ffsr_plan.roadmap import Certificate
 
@@ -71,7 +72,8 @@ class Plan:
     @cached_property
     def motion(self) -> Motion:
         """The continuous motion through `configurations`."""
-        return Motion(self.problem, self.configurations[:, :3])
+        problem, along = self.problem, self.configurations[:, :3]
+        return Motion(problem.robot, problem.mode, problem.start, problem.goal, along)
 
     @property
     def arrival_attitude(self) -> Array:
@@ -119,6 +121,19 @@ class Plan:
         begin = lattice.nominal.positions[layer] + lattice.offsets[tail]
         end = lattice.nominal.positions[layer + 1] + lattice.offsets[head]
         return np.stack([begin, end], axis=1), strength[order]
+
+    def obstacles_near(self, within: float) -> Flags:
+        """(N,) which spheres come so near [m] to the middle of any of the robot's shapes.
+
+        For pictures of scenes with many obstacles: looked at eight times an edge, not proven.
+        """
+        scene, robot = self.problem.scene, self.problem.robot
+        q = self.at(np.linspace(0.0, 1.0, 8 * self.problem.lattice.divisions + 1))
+        track = shape_placements(robot, q).positions.reshape(-1, 3)
+        near = np.zeros(len(scene), dtype=bool)
+        for k, (center, radius) in enumerate(zip(scene.centers, scene.radii, strict=True)):
+            near[k] = np.any(np.linalg.norm(track - center, axis=1) < within + radius)
+        return near
 
     def verify(self, samples: int = 2000) -> Report:
         """Check the plan again, densely and by other code than the planner's; see `verify`.

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.edges import ROUNDING, Verdict
+from ffsr_plan.compiling import call
+from ffsr_plan.edges import Verdict
 from ffsr_plan.errors import NoPath
 from ffsr_plan.inputs import Array, Flags, IntArray, States, frozen
 from ffsr_plan.lattice import LayeredLattice
@@ -53,7 +54,7 @@ class Roadmap:
         """
         self.problem = problem
         self.lattice = LayeredLattice(problem)
-        self.prover = Prover(self.lattice.nominal)
+        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)
         self.prover.check_ends()
         self.prover.check_self_collision()
         self._nodes = NodeClearances(self.lattice, self.prover)
@@ -102,11 +103,17 @@ class Roadmap:
         verdicts = [self.free(*edge) for edge in edges]  # not only up to the first refusal
         return all(verdicts)
 
+    def refused_layers(self, path: IntArray) -> IntArray:
+        """The layers that a path (m + 1,) leaves by an edge known to be refused."""
+        states = self.status[np.arange(len(self.status)), path[:-1], path[1:]]
+        return np.flatnonzero(states == REFUSED)
+
     def prove_obvious(self) -> None:
         """Mark the edges that the clearances at their ends prove free without a query."""
-        travel = self.lattice.base_travel + (self.prover.swing + ROUNDING)
+        prover, base_travel = self.prover, self.lattice.base_travel
         positive = np.where(self.admissible, self.clearances, np.nan)
         for i in range(self.lattice.divisions):
+            travel = base_travel + (prover.speeds[i] + prover.rounding)
             self.status[i][positive[i][:, None] + positive[i + 1] > travel] = FREE
 
     def path_length(self, path: IntArray) -> float:
@@ -181,12 +188,11 @@ class Roadmap:
         offsets, found = self.lattice.offsets, set[int | str]()
         for (i, tail, head), verdict in self._verdicts.items():
             if i == layer and not verdict.free:
-                found.add(
-                    self.prover.nearest_obstacle(i, offsets[tail], offsets[head], verdict.time)
-                )
+                near = self.prover.nearest(i, offsets[tail], offsets[head], verdict.time)
+                found.add(near.other)
         if layer + 1 < self.lattice.divisions:
             for at in offsets[~self.admissible[layer + 1]]:
-                found.add(self.prover.nearest_obstacle(layer + 1, at, at, 0.0))
+                found.add(self.prover.nearest(layer + 1, at, at, 0.0).other)
         return tuple(sorted(found, key=lambda name: (isinstance(name, str), name)))
 
 
@@ -208,9 +214,10 @@ def rule_out(
     depth, t = -verdict.least_clearance * (1.0 - 1e-9), verdict.time
     if depth <= 0.0:
         return
+    from ffsr_plan.refusals import refuse_near
+
     met = (1.0 - t) * tails[edge[0]] + t * heads[edge[1]]
-    there = (1.0 - t) * (tails[:, None] - met) + t * (heads[None] - met)
-    status[np.einsum("jki,jki->jk", there, there) < depth**2] = REFUSED
+    call(refuse_near, status, tails, heads, t, met, depth)
 
 
 __all__ = ["FREE", "REFUSED", "UNKNOWN", "Certificate", "Roadmap", "rule_out"]

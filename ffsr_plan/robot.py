@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,7 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from ffsr_plan import bundled
 from ffsr_plan.attitude import IDENTITY, from_angles, to_angles
 from ffsr_plan.errors import InvalidInput, unknown_name
-from ffsr_plan.inputs import Array, finite_array, frozen, number, unit_quaternion
+from ffsr_plan.inputs import FARTHEST, Array, finite_array, frozen, number, unit_quaternion
+from ffsr_plan.kinematics import Tree
+from ffsr_plan.primitives import Primitives, primitives
 from ffsr_plan.urdf_check import Counts, check_urdf
 
 
@@ -81,6 +84,16 @@ class SpaceRobot:
         """Number of joints of the arms, nv - 6."""
         return len(self.joint_names)
 
+    @cached_property
+    def tree(self) -> Tree:
+        """The kinematic tree, for many configurations at once."""
+        return Tree(self.model)
+
+    @cached_property
+    def primitives(self) -> Primitives:
+        """The collision shapes as arrays."""
+        return primitives(self.collision_model)
+
     def neutral(self) -> Array:
         """(nq,) base at the world's origin, joint values zero."""
         return self.assemble(np.zeros(3), IDENTITY, np.zeros(self.nd))
@@ -110,7 +123,7 @@ class SpaceRobot:
             values[self.joint_names.index(name)] = number(f"joints.{name}", value)
         self.check_limits("joints", values)
         quat = from_angles(finite_array("attitude", attitude, (3,)))
-        return self.assemble(finite_array("position", position, (3,)), quat, values)
+        return self.assemble(finite_array("position", position, (3,), FARTHEST), quat, values)
 
     def components(self, q: ArrayLike) -> Components:
         """The inverse of `configuration`: position, ZYX angles and joint values by name."""
@@ -154,6 +167,15 @@ class SpaceRobot:
             values[..., k] = q[..., i] if nq == 1 else np.arctan2(q[..., i + 1], q[..., i])
         return values
 
+    def joint_change(self, begin: Array, end: Array) -> Array:
+        """(nd,) from one configuration (nq,) to another, continuous joints the shorter way round.
+
+        Half a turn goes in the positive sense.
+        """
+        change = self.joint_values(end) - self.joint_values(begin)
+        wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
+        return np.where(np.isinf(self.upper), wrapped, change)
+
     def check_configuration(self, what: str, q: ArrayLike) -> Array:
         """A clean, read-only copy of `q` (nq,).
 
@@ -162,6 +184,7 @@ class SpaceRobot:
                 sine) not of norm one, joint outside its limits.
         """
         checked = np.array(finite_array(what, q, (self.model.nq,)))
+        finite_array(f"{what} (base position)", checked[:3], (3,), FARTHEST)
         checked[3:7] = unit_quaternion(f"{what} (base quaternion)", checked[3:7])
         for name, (i, nq) in zip(self.joint_names, self._slots, strict=True):
             if nq == 2 and abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:

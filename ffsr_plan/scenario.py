@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
+import numpy as np
 import pydantic
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -15,10 +16,12 @@ from ffsr_plan import bundled
 from ffsr_plan.axes import Axis, Lattice
 from ffsr_plan.colony import MaxMinAntSystem, Planner
 from ffsr_plan.errors import InvalidInput, unknown_name
+from ffsr_plan.generators import cloud
 from ffsr_plan.inputs import one_of, whole_number
+from ffsr_plan.motion import MODES
 from ffsr_plan.paper import DIVISIONS
 from ffsr_plan.planner import PLANNERS
-from ffsr_plan.problem import MODES, Problem
+from ffsr_plan.problem import Problem
 from ffsr_plan.robot import load_robot
 from ffsr_plan.scene import Scene
 
@@ -67,6 +70,18 @@ class ObstacleTable(_Table):
 
     center: Triple
     radius: Number
+
+
+class CloudTable(_Table):
+    """The table `[[clouds]]`: spheres drawn from a seed."""
+
+    seed: int
+    count: int
+    low: Triple
+    high: Triple
+    radii: Annotated[list[Number], Field(min_length=2, max_length=2)]
+    spared: Number = 0.0
+    """No sphere comes nearer than this to the base at start or goal [m]."""
 
 
 class AxisTable(_Table):
@@ -121,6 +136,7 @@ class ScenarioFile(_Table):
     start: PoseTable = PoseTable()
     goal: GoalTable
     obstacles: list[ObstacleTable] = []
+    clouds: list[CloudTable] = []
     lattice: LatticeTable
     objective: ObjectiveTable = ObjectiveTable()
     planner: PlannerTable = PlannerTable()
@@ -196,11 +212,16 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
             file.goal.position, file.goal.attitude or (0.0, 0.0, 0.0), file.goal.joints
         )
     with _in_table("obstacles"):
-        scene = Scene([o.center for o in file.obstacles], [o.radius for o in file.obstacles])
+        scenes = [Scene([o.center for o in file.obstacles], [o.radius for o in file.obstacles])]
+    with _in_table("clouds"):
+        for table in file.clouds:
+            spared = [(q[:3], table.spared) for q in (start, goal)]
+            scenes.append(cloud(**table.model_dump(exclude={"spared"}), spared=spared))
+    scene = Scene(np.vstack([s.centers for s in scenes]), np.hstack([s.radii for s in scenes]))
     axes = {
-        name: Axis(**table.model_dump())
+        name: Axis(**axis.model_dump())
         for name in ("lateral", "normal")
-        if (table := getattr(file.lattice, name)) is not None
+        if (axis := getattr(file.lattice, name)) is not None
     }
     problem = Problem(
         robot,
@@ -211,15 +232,15 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         lattice=Lattice(divisions=file.lattice.divisions, **axes),
         **file.objective.model_dump(),
     )
-    table = file.planner
-    kind = PLANNERS[one_of("planner.name", table.name, list(PLANNERS))]
-    settings = table.model_dump(exclude={"name", "seed", "refine"}, exclude_none=True)
+    wanted = file.planner
+    kind = PLANNERS[one_of("planner.name", wanted.name, list(PLANNERS))]
+    settings = wanted.model_dump(exclude={"name", "seed", "refine"}, exclude_none=True)
     for key in settings:
         if key not in kind.__dataclass_fields__:
             known = [name for name in kind.__dataclass_fields__ if name != "name"]
             raise unknown_name(f"planner ({kind.name})", key, known)
-    seed = whole_number("planner.seed", table.seed, at_least=0)
-    return Scenario(file.title, problem, kind(**settings), seed, table.refine)
+    seed = whole_number("planner.seed", wanted.seed, at_least=0)
+    return Scenario(file.title, problem, kind(**settings), seed, wanted.refine)
 
 
 @contextmanager

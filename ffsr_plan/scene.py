@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.errors import InvalidInput
-from ffsr_plan.inputs import Array, finite_array
+from ffsr_plan.inputs import FARTHEST, Array, finite_array
+from ffsr_plan.sphere_tree import SphereTree, sphere_tree
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -31,7 +33,7 @@ class Scene:
         """
         if np.size(centers) == 0:  # so that [] will do for "no obstacle"
             centers = np.zeros((0, 3))
-        c = finite_array("scene centers", centers, (-1, 3))
+        c = finite_array("scene centers", centers, (-1, 3), FARTHEST)
         r = finite_array("scene radii", radii, (-1,))
         if len(c) != len(r):
             raise InvalidInput(
@@ -41,6 +43,11 @@ class Scene:
             raise InvalidInput(f"scene radii[{i}]", float(r[i]), "greater than 0 m")
         object.__setattr__(self, "centers", c)
         object.__setattr__(self, "radii", r)
+
+    @cached_property
+    def tree(self) -> SphereTree:
+        """The spheres as a tree, built when it is first needed."""
+        return sphere_tree(self.centers, self.radii)
 
     def __len__(self) -> int:
         return len(self.radii)

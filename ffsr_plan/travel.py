@@ -61,8 +61,35 @@ class Travel(NamedTuple):
         coarse = length * (base_speed + self.speed[interval])
         return self._of_shapes(np.minimum(straight, coarse) + self.slack[interval])
 
+    def within(self, interval: int, length: float, aside: float, base_step: Array) -> Array:
+        """T (g,) [m] over a part of an interval that does not have the middle inside.
+
+        Over the part the velocity differs from the middle's by at most A |t - middle|.
+
+        Args:
+            interval: the interval.
+            length: of the part, in units of edge time.
+            aside: distance of the part's middle from the interval's, in the same units.
+            base_step: (3,) as for `bounds`.
+        """
+        velocity = np.linalg.norm(self.velocity[interval] + base_step, axis=-1)
+        change = 4.0 / self.lengths[interval] ** 2 * self.bend[interval]
+        coarse = np.linalg.norm(base_step) + self.speed[interval]
+        fastest = np.minimum(velocity + abs(aside) * change, coarse)
+        return self._of_shapes(length * fastest + self.slack[interval])
+
     def _of_shapes(self, points: Array) -> Array:
         return np.asarray(np.maximum.reduceat(points, self.first, axis=-1))
+
+
+class Travels(NamedTuple):
+    """The bound over the same intervals for two observers."""
+
+    world: Travel
+    """In the world."""
+    in_base: Travel
+    """As seen from the base: to be asked with a base step of zero. Two shapes of one robot keep
+    apart where their distances at an interval's ends sum to more than the sum of their bounds."""
 
 
 class _Turn(NamedTuple):
@@ -109,7 +136,7 @@ class TravelBound:
         attitudes: Array,
         lengths: Array,
         error: float,
-    ) -> Travel:
+    ) -> Travels:
         """The base turns so that the angular momentum stays zero (free-flying).
 
         Args:
@@ -121,7 +148,7 @@ class TravelBound:
                 which clearances are measured.
         """
         links = self._reach.over(joint_values, joint_rates, lengths)
-        return self._world(links, self._reaction(links), attitudes, error)
+        return self._travels(links, self._reaction(links), attitudes, error)
 
     def held(
         self,
@@ -130,7 +157,7 @@ class TravelBound:
         attitudes: Array,
         lengths: Array,
         turn: Array,
-    ) -> Travel:
+    ) -> Travels:
         """The base turns at the angular velocity `turn` (K, 3), base axes [rad] per unit of time.
 
         The other arguments are those of `reacting`.
@@ -138,19 +165,7 @@ class TravelBound:
         links = self._reach.over(joint_values, joint_rates, lengths)
         most = np.sqrt(np.sum(turn**2, axis=-1))
         turning = _Turn(turn, most, np.zeros_like(most))
-        return self._world(links, turning, attitudes, 0.0)
-
-    def in_base(self, joint_values: Array, joint_rates: Array, lengths: Array) -> Array:
-        """(K, g) [m] as seen from the base; arguments as for `reacting`.
-
-        Two shapes of one robot keep apart where their distances at an interval's ends sum to more
-        than the sum of their two bounds.
-        """
-        links = self._reach.over(joint_values, joint_rates, lengths)
-        still = _Turn(*(np.zeros((len(lengths), *rest)) for rest in ((3,), (), ())))
-        identity = np.broadcast_to(attitude.IDENTITY, (len(lengths), 4))
-        travel = self._world(links, still, identity, 0.0)
-        return travel.bounds(np.arange(len(lengths)), np.zeros((len(lengths), 3)))
+        return self._travels(links, turning, attitudes, 0.0)
 
     def _reaction(self, links: Links) -> _Turn:
         """The base's rotation at zero angular momentum.
@@ -184,25 +199,30 @@ class TravelBound:
         )
         return _Turn(rate, most, (momentum_change + inertia_change * most) / least)
 
-    def _world(self, links: Links, turn: _Turn, attitudes: Array, error: float) -> Travel:
+    def _travels(self, links: Links, turn: _Turn, attitudes: Array, error: float) -> Travels:
         """All that T needs but the base's translation."""
-        position, velocity, reach = links.reach(self.links, self.points)
-        velocity += cross(turn.rate[:, None], position)
+        position, relative, reach = links.reach(self.links, self.points)
+        velocity = relative + cross(turn.rate[:, None], position)
         most, length = turn.most[:, None], 2.0 * links.half
         bend = (
             (turn.change[:, None] + most**2) * reach.distance
             + 2.0 * most * reach.speed
             + reach.bend
         )
-        slack = error * (2.0 * reach.distance + length * np.linalg.norm(velocity, axis=-1))
-        return Travel(
+        quarter = 0.25 * length**2
+        world = Travel(
             velocity @ np.swapaxes(attitude.matrix(attitudes), -1, -2),
             most * reach.distance + reach.speed,
-            0.25 * length**2 * bend,
-            slack,
+            quarter * bend,
+            error * (2.0 * reach.distance + length * np.linalg.norm(velocity, axis=-1)),
             length[:, 0],
             self.first,
         )
+        still = np.zeros_like(reach.speed)
+        in_base = Travel(
+            relative, reach.speed, quarter * reach.bend, still, length[:, 0], self.first
+        )
+        return Travels(world, in_base)
 
 
 def _locked(
@@ -232,68 +252,3 @@ def _points(geometry: pin.GeometryObject) -> Array:
         box = np.array([shape.aabb_local.min_, shape.aabb_local.max_])
         local = np.array(list(product(*box.T)))
     return np.asarray(local @ placement.rotation.T + placement.translation)
-
-
-class Swing(NamedTuple):
-    """Bounds on speeds per unit of an edge's time, one for each collision shape (g,) [m]."""
-
-    world: Array
-    """About the base origin, base rotation included; the base's translation comes on top."""
-    in_base: Array
-    """Relative to the base, in its frame."""
-
-
-def swing(robot: SpaceRobot, joint_step: Array, joint_reach: Array, omega: float | None) -> Swing:
-    """Bound the speed of every point of each collision shape, at any time.
-
-    The recursion of `TravelBound` without its middle; Omega from the least kinetic energy alone.
-
-    Args:
-        robot: the robot.
-        joint_step: (nd,) change of the joint values over an edge.
-        joint_reach: (nd,) largest |joint value| on the way; matters for prismatic joints only.
-        omega: angular speed of the base over an edge [rad], or None where it reacts to the arms.
-    """
-    model = robot.model
-    angular = np.zeros(model.njoints)
-    linear = np.zeros(model.njoints)
-    distance = np.zeros(model.njoints)
-    for j in range(2, model.njoints):
-        parent, k = model.parents[j], j - 2
-        rate, slides = abs(joint_step[k]), robot.prismatic[k]
-        offset = float(np.linalg.norm(model.jointPlacements[j].translation))
-        offset += joint_reach[k] if slides else 0.0
-        angular[j] = angular[parent] + (0.0 if slides else rate)
-        linear[j] = linear[parent] + angular[parent] * offset + (rate if slides else 0.0)
-        distance[j] = distance[parent] + offset
-    if omega is None:
-        omega = _reaction_speed(model, angular, linear)
-    shapes = robot.collision_model.geometryObjects
-    joints = np.array([g.parentJoint for g in shapes], dtype=np.int64)
-    reach = np.array([_reach(g) for g in shapes])
-    in_base = linear[joints] + angular[joints] * reach
-    return Swing(omega * (distance[joints] + reach) + in_base, in_base)
-
-
-def _reaction_speed(model: pin.Model, angular: Array, linear: Array) -> float:
-    energy, inertia = 0.0, 0.0
-    for j in range(1, model.njoints):
-        body = model.inertias[j]
-        if body.mass == 0.0:
-            continue
-        least, _, most = np.linalg.eigvalsh(body.inertia)
-        speed = linear[j] + angular[j] * float(np.linalg.norm(body.lever))
-        energy += body.mass * speed**2 + most * angular[j] ** 2
-        inertia += max(least, 0.0)
-    return float(np.sqrt(energy / inertia))
-
-
-def _reach(geometry: pin.GeometryObject) -> float:
-    """Largest distance of the shape's points from the origin of the joint that carries it."""
-    placement, shape = geometry.placement, geometry.geometry
-    if isinstance(shape, coal.Sphere):
-        return float(np.linalg.norm(placement.translation) + shape.radius)
-    corners = np.array(list(product((-1.0, 1.0), repeat=3))) * shape.halfSide
-    return float(
-        np.max(np.linalg.norm(corners @ placement.rotation.T + placement.translation, axis=1))
-    )

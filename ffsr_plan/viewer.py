@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.attitude import angle_between
-from ffsr_plan.collision import obstacle_query
+from ffsr_plan.collision import ObstacleQuery
 from ffsr_plan.inputs import Array
 from ffsr_plan.lattice import path_frame
 from ffsr_plan.robot import SpaceRobot
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
 SECONDS = 12.0  # how long the motion is shown; a plan has no time law of its own
 _FRAMES_PER_EDGE = 8
-_START, _GOAL, _OBSTACLE = 0x4FB3D9, 0x58C27D, 0xAEB4BF
+_TRIANGLES = 600_000  # of all obstacles together; many of them are drawn a little less round
+_START, _GOAL, _OBSTACLE, _FAR = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
+_FEW, _NEAR = 60, 0.8  # obstacles that are all drawn solid; beyond that, only those so near [m]
 _TRACK, _TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)
 _GLOW = np.array([(0.09, 0.06, 0.20), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
 
@@ -76,7 +78,7 @@ def page(plan: Plan, title: str = "") -> str:
         _add_robot(viewer["ghosts"][name], plan.problem.robot, q, colour)
     _add_tracks(viewer, plan, frames)
     _animate(viewer, plan.problem.robot, frames)
-    query = obstacle_query(plan.problem.robot, plan.problem.scene)
+    query = ObstacleQuery(plan.problem.robot, plan.problem.scene)
     clearances = query.distances(frames)
     data = {
         "title": title or f"{plan.problem.robot.name}, {plan.problem.mode}",
@@ -139,14 +141,41 @@ def _view_axes(plan: Plan) -> Array:
     return np.array([frame[:, 2], frame[:, 0], frame[:, 1]])
 
 
-def _add_obstacles(viewer: Any, plan: Plan) -> None:  # noqa: ANN401 - meshcat has no types
+def _add_obstacles(viewer: Any, plan: Plan) -> None:  # noqa: ANN401 - meshcat
+    """Spheres; where they are many, those far from the motion are faint, so that it can be seen."""
     import meshcat.geometry as mg
 
-    material = mg.MeshPhongMaterial(color=_OBSTACLE, shininess=60)
     scene = plan.problem.scene
-    for k, (center, radius) in enumerate(zip(scene.centers, scene.radii, strict=True)):
-        viewer[str(k)].set_object(_sphere(float(radius)), material)
-        viewer[str(k)].set_transform(_translation(center))
+    near = plan.obstacles_near(_NEAR if len(scene) > _FEW else np.inf)
+    solid = mg.MeshPhongMaterial(color=_OBSTACLE, shininess=60)
+    faint = mg.MeshPhongMaterial(color=_FAR, opacity=0.13, depthWrite=False, shininess=10)
+    rings = int(np.clip(math.sqrt(_TRIANGLES / max(len(scene), 1) / 4), 8, 28))
+    for name, chosen, material in (("near", near, solid), ("far", ~near, faint)):
+        if chosen.any():
+            spheres = _instances(scene.centers[chosen], scene.radii[chosen], rings, material)
+            viewer[name].set_object(spheres)
+
+
+def _instances(centers: Array, radii: Array, rings: int, material: Any) -> Any:  # noqa: ANN401
+    """All spheres as copies of one: thousands are drawn in one go, and turn without stutter."""
+    import meshcat.geometry as mg
+
+    class Instances(mg.Mesh):  # type: ignore[misc]  # what three.js reads, meshcat does not know
+        _type = "InstancedMesh"
+
+        def lower(self) -> Any:  # noqa: ANN401
+            placed = np.zeros((len(radii), 4, 4))
+            placed[:, [0, 1, 2], [0, 1, 2]] = radii[:, None]
+            placed[:, 3, :3], placed[:, 3, 3] = centers, 1.0  # by columns
+            data = super().lower()
+            data["object"] |= {
+                "count": len(radii),
+                "instanceMatrix": {"array": np.round(placed, 6).ravel().tolist()},
+                "frustumCulled": False,  # it would be judged by the one sphere at the origin
+            }
+            return data
+
+    return Instances(_sphere(1.0, rings), material)
 
 
 def _add_robot(
@@ -290,12 +319,15 @@ def _animate(viewer: Any, robot: SpaceRobot, frames: Array) -> None:  # noqa: AN
     viewer.set_animation(Animation(clips), play=False)
 
 
-def _sphere(radius: float) -> Any:  # noqa: ANN401 - meshcat has no types
+def _sphere(radius: float, rings: int = 28) -> Any:  # noqa: ANN401 - meshcat has no types
     import meshcat.geometry as mg
 
     class Sphere(mg.Sphere):  # type: ignore[misc]  # round enough to be seen close up
         def lower(self, object_data: Any) -> Any:  # noqa: ANN401
-            return super().lower(object_data) | {"widthSegments": 40, "heightSegments": 28}
+            return super().lower(object_data) | {
+                "widthSegments": rings * 10 // 7,
+                "heightSegments": rings,
+            }
 
     return Sphere(radius)
 

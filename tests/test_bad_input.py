@@ -223,10 +223,17 @@ def test_every_error_has_one_root_and_survives_pickling():
 
 
 def test_huge_numbers_are_refused_before_they_reach_coal(robot):
-    with pytest.raises(fp.InvalidInput, match=r"scene centers.*1e\+09"):
-        fp.Scene([[1e200, 0, 0]], [1.0])
-    with pytest.raises(fp.InvalidInput, match=r"position.*1e\+09"):
+    """Far from the origin a coordinate has no digits left for the margins of the proofs."""
+    with pytest.raises(fp.InvalidInput, match=r"scene centers.*at most 100000"):
+        fp.Scene([[2e5, 0, 0]], [1.0])
+    with pytest.raises(fp.InvalidInput, match=r"scene radii.*1e\+09"):
+        fp.Scene([[0, 0, 0]], [1e200])
+    with pytest.raises(fp.InvalidInput, match=r"position.*at most 100000"):
         robot.configuration((1e12, 0, 0))
+    q = robot.neutral()
+    q[0] = 2e5
+    with pytest.raises(fp.InvalidInput, match=r"start \(base position\).*at most 100000"):
+        fp.Problem(**arguments(robot, start=q))
     with pytest.raises(fp.InvalidInput, match=r"spacing.*at most 1e\+06"):
         fp.Axis(2, 1e200)
     with pytest.raises(fp.InvalidInput, match=r"beta.*at most 40"):

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ffsr_plan as fp
-from ffsr_plan.collision import obstacle_query, self_query
+from ffsr_plan.collision import ObstacleQuery, SelfQuery
 from ffsr_plan.robot import robot_from_urdf
 
 seeds = st.integers(0, 10_000)
@@ -43,7 +43,7 @@ def test_clearance_is_the_least_over_obstacles(seed):
         for c, r in zip(scene.centers, scene.radii, strict=True)
     ]
     assert fp.clearance(robot, scene, q) == min(each)
-    near = obstacle_query(robot, scene).nearest(q)
+    near = ObstacleQuery(robot, scene).nearest(q)
     assert near.other == int(np.argmin(each))
 
 
@@ -75,7 +75,7 @@ def test_an_empty_scene_is_infinitely_far(robot):
 
 
 def test_self_distance_depends_on_the_joints_alone(robot):
-    query = self_query(robot)
+    query = SelfQuery(robot)
     joints = {"left_1": -0.8, "right_1": 0.9, "left_2": 0.3}
     a = robot.configuration(joints=joints)
     b = robot.configuration((3, -2, 1), (0.4, 0.5, 0.6), joints)
@@ -84,6 +84,6 @@ def test_self_distance_depends_on_the_joints_alone(robot):
 
 def test_the_nearest_link_is_named(robot):
     q = robot.neutral()  # arms stretched to the sides
-    near = obstacle_query(robot, fp.Scene([[0.12, 1.6, 0.0]], [0.2])).nearest(q)
+    near = ObstacleQuery(robot, fp.Scene([[0.12, 1.6, 0.0]], [0.2])).nearest(q)
     assert near.link == "left_link_3"
     assert near.other == 0

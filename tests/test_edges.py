@@ -10,19 +10,38 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import ffsr_plan as fp
-from ffsr_plan.edges import certify, clearance_bound
+from ffsr_plan.edges import ROUNDING, certify, clearance_bound
 from ffsr_plan.roadmap import Roadmap
 
 seeds = st.integers(0, 100_000)
 
 
-def along_a_line(y, radius=1.0, end=4.0, tolerance=1e-4):
+class Line:
     """A point passing a disc at lateral distance `y`: everything in closed form."""
 
-    def clearance(time):
-        return math.hypot((time - 0.5) * end, y) - radius
+    rounding = ROUNDING
 
-    return certify(clearance, (clearance(0.0), clearance(1.0)), end, tolerance), clearance
+    def __init__(self, y, radius=1.0, end=4.0):
+        self.y, self.radius, self.speed, self.asked = y, radius, end, []
+
+    def clearance(self, time):
+        self.asked.append(time)
+        return math.hypot((time - 0.5) * self.speed, self.y) - self.radius
+
+    def parts(self, time):
+        return np.array([self.clearance(time)])
+
+    def travel(self, begin, end):
+        return np.array([(end - begin) * self.speed])
+
+    @property
+    def ends(self):
+        return self.clearance(0.0), self.clearance(1.0)
+
+
+def along_a_line(y, tolerance=1e-4):
+    edge = Line(y)
+    return certify(edge, edge.ends, tolerance), edge
 
 
 def test_tangency_counts_as_blocked():
@@ -36,9 +55,9 @@ def test_an_edge_that_keeps_more_than_the_tolerance_is_proven_free(spare):
 
 @given(st.floats(0.0, 0.999))
 def test_an_edge_that_runs_through_is_refused(y):
-    verdict, clearance = along_a_line(y)
+    verdict, edge = along_a_line(y)
     assert not verdict.free
-    assert clearance(verdict.time) == pytest.approx(verdict.least_clearance)
+    assert edge.clearance(verdict.time) == pytest.approx(verdict.least_clearance)
 
 
 @given(st.floats(1e-12, 9e-5))
@@ -49,23 +68,52 @@ def test_an_edge_is_refused_only_where_it_comes_nearer_than_the_tolerance(spare)
 
 @given(st.floats(1e-6, 3.0), st.floats(0.01, 0.5))
 def test_the_clearance_bound_is_below_the_least_clearance_and_near_it(spare, slack):
-    _, clearance = along_a_line(1.0 + spare)
-    ends = (clearance(0.0), clearance(1.0))
-    bound, met = clearance_bound(clearance, ends, 4.0, np.inf, slack)
+    edge = Line(1.0 + spare)
+    bound, met = clearance_bound(edge, edge.ends, np.inf, slack)
     assert (1.0 - 1.1 * slack) * spare <= bound <= spare * (1 + 1e-12) <= met * (1 + 1e-9)
 
 
 def test_an_edge_clearer_than_the_rest_of_the_path_is_not_looked_at_closely():
-    asked = []
+    edge = Line(3.0)
+    ends, edge.asked = edge.ends, []
+    bound, met = clearance_bound(edge, ends, 0.1, 0.05)
+    assert 0.095 <= bound <= met == 0.1
+    assert len(edge.asked) < 10
 
-    def clearance(time):
-        asked.append(time)
-        return along_a_line(3.0)[1](time)
 
-    ends = (clearance(0.0), clearance(1.0))
-    bound, met = clearance_bound(clearance, ends, 4.0, 0.1, 0.05)
-    assert (bound, met) == (0.1, 0.1)
-    assert len(asked) < 10
+class TwoLinks(Line):
+    """One link rests beside an obstacle, another goes far where there is none."""
+
+    def __init__(self, beside=0.01):
+        super().__init__(0.0, end=2.0)
+        self.beside = beside
+
+    def clearance(self, time):
+        self.asked.append(time)
+        return self.beside
+
+    def parts(self, time):
+        return np.array([self.beside, 5.0])
+
+    def travel(self, begin, end):
+        return np.array([0.0, (end - begin) * self.speed])
+
+
+def test_a_link_that_stays_near_an_obstacle_is_no_concern_of_one_that_moves_far_from_it():
+    edge = TwoLinks()
+    verdict = certify(edge, (0.01, 0.01), 1e-4)
+    assert verdict.free
+    assert verdict.queries == 0
+    assert edge.asked == []
+
+
+def test_the_queries_of_a_verdict_are_counted():
+    edge = Line(1.05)
+    ends, edge.asked = edge.ends, []
+    verdict = certify(edge, ends, 1e-4)
+    assert verdict.free
+    halved = {time for time in edge.asked if 0.0 < time < 1.0}
+    assert 0 < verdict.queries == len(halved)
 
 
 def small_problem(seed, mode="free-flying"):

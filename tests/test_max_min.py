@@ -263,17 +263,19 @@ def test_numbers_of_colonies_workers_and_seconds_are_checked():
 
 
 def test_a_word_is_said_when_compiling_takes_its_time(capfd):
-    from ffsr_plan.colony.compiling import first_call
+    from ffsr_plan.compiling import call
 
     class Kernel:
-        signatures = ()
+        overloads = ()
 
-    with first_call(Kernel()):
-        time.sleep(1.8)
-    assert "compiling the search kernels, once" in capfd.readouterr().err
-    Kernel.signatures = ("done",)
-    with first_call(Kernel()):
-        time.sleep(1.8)
+        def __call__(self, seconds):
+            time.sleep(seconds)
+            return "done"
+
+    assert call(Kernel(), 1.8) == "done"
+    assert "compiling, once" in capfd.readouterr().err
+    Kernel.overloads = ("done",)
+    assert call(Kernel(), 1.8) == "done"
     assert capfd.readouterr().err == ""
 
 

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from ffsr_plan import paper
-from ffsr_plan.colony.compiling import first_call
 from ffsr_plan.colony.records import Cycle, History, Search, Trails, Watch
+from ffsr_plan.compiling import call
 from ffsr_plan.errors import PlanningError
 from ffsr_plan.inputs import Array, IntArray, frozen, number, whole_number
 from ffsr_plan.roadmap import Roadmap
@@ -144,11 +144,10 @@ class Walk:
         self._changed[:] = True
         ant, layer = 0, -1
         while True:
-            with first_call(walk):
-                ant, layer = walk(
-                    self._rng, tau, self._alpha, self._log_visibility, self._ways, self._exits,
-                    roadmap.status, self._wheels, self._changed, paths, ant, layer,
-                )  # fmt: skip
+            ant, layer = call(
+                walk, self._rng, tau, self._alpha, self._log_visibility, self._ways, self._exits,
+                roadmap.status, self._wheels, self._changed, paths, ant, layer,
+            )  # fmt: skip
             if ant == len(paths):
                 return paths
             if ant < 0:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ffsr_plan import paper
-from ffsr_plan.colony.compiling import first_call
 from ffsr_plan.colony.records import Cycle, History, Search, Trails, Watch
+from ffsr_plan.compiling import call
 from ffsr_plan.errors import PlanningError
 from ffsr_plan.inputs import Array, Flags, IntArray, frozen, number, truth, whole_number
 from ffsr_plan.roadmap import Roadmap
@@ -128,14 +128,13 @@ class MaxMinAntSystem:
         while True:
             if exits[0, roadmap.lattice.origin] == 0:
                 raise roadmap.no_path() or PlanningError("the ants are lost")
-            with first_call(kernel.run_cycles):
-                outcome = kernel.run_cycles(rng, until, state)
+            outcome = call(kernel.run_cycles, rng, until, state)
             if outcome == kernel.DONE:
                 return
             if roadmap.prove_path(state.candidate):
                 continue
             changed = np.zeros(exits.shape, dtype=bool)
-            for layer in range(len(exits)):
+            for layer in roadmap.refused_layers(state.candidate):
                 close_refused(layer, roadmap.status, state.ways, exits, changed)
             state.visibility[changed] *= state.ways[changed]
             state.untouched_wheels[changed] = np.cumsum(state.visibility[changed], axis=1)

@@ -1,0 +1,49 @@
+"""Where the collision shapes are: base pose, kinematics of the arms, placement on the link."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan import attitude
+from ffsr_plan.inputs import Array
+from ffsr_plan.kinematics import turned
+from ffsr_plan.robot import SpaceRobot
+
+
+class Placements(NamedTuple):
+    """The g collision shapes of a robot in the world, K times."""
+
+    frames: Array
+    """(K, g, 15): rotation (9, row by row; shape axes to world axes), position [m], size [m]."""
+
+    @property
+    def rotations(self) -> Array:
+        """(K, g, 3, 3), shape axes to world axes."""
+        return self.frames[..., :9].reshape(*self.frames.shape[:2], 3, 3)
+
+    @property
+    def positions(self) -> Array:
+        """(K, g, 3) [m]."""
+        return self.frames[..., 9:12]
+
+
+def shape_placements(robot: SpaceRobot, configurations: Array) -> Placements:
+    """Placements of all collision shapes at configurations (K, nq)."""
+    poses = robot.tree.poses(robot.joint_values(configurations))
+    shapes = robot.primitives
+    base = attitude.matrix(configurations[:, 3:7])[:, None]
+    links = base @ poses.rotations[:, shapes.links]
+    origins = configurations[:, None, :3] + turned(base, poses.origins[:, shapes.links])
+    count = links.shape[:2]
+    return Placements(
+        np.concatenate(
+            [
+                (links @ shapes.rotations).reshape(*count, 9),
+                origins + turned(links, shapes.positions),
+                np.broadcast_to(shapes.sizes, (*count, 3)),
+            ],
+            axis=2,
+        )
+    )
