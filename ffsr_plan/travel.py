@@ -89,6 +89,9 @@ def _reach(geometry: pin.GeometryObject) -> float:
     placement, shape = geometry.placement, geometry.geometry
     if isinstance(shape, coal.Sphere):
         return float(np.linalg.norm(placement.translation) + shape.radius)
+    if not isinstance(shape, coal.Box):  # temporary
+        shape.computeLocalAABB()
+        return float(np.linalg.norm(placement.act(shape.aabb_center)) + shape.aabb_radius)
     corners = np.array(list(product((-1.0, 1.0), repeat=3))) * shape.halfSide
     return float(
         np.max(np.linalg.norm(corners @ placement.rotation.T + placement.translation, axis=1))
