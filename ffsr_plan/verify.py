@@ -2,6 +2,10 @@
 
 Nothing here calls the planner's clearance, momentum, length or objective code. The motion itself,
 `plan.at`, is taken as a black box and sampled; velocities come from differences of link poses.
+
+Where a solid stands for a cylinder or mesh (`SpaceRobot.replacements`), all distances are to that
+solid, as in the plan, and it is checked that it holds the original: the cylinder of the URDF, the
+corners of the mesh's hull that the plan carries. The true robot is then at least as clear.
 """
 
 from __future__ import annotations
@@ -11,8 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ffsr_plan.bodies import Bodies, Shape, pose, separation, sphere_distance
+from ffsr_plan.bodies import Bodies, pose
 from ffsr_plan.inputs import Array, whole_number
+from ffsr_plan.separation import separation
+from ffsr_plan.solids import Shape, least_sphere_distance, sphere_distance
 
 if TYPE_CHECKING:
     from ffsr_plan.result import Plan
@@ -58,7 +64,10 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
     """
     samples = whole_number("samples", samples, at_least=1)
     problems: list[str] = []
-    bodies = Bodies(plan.problem.robot.urdf)
+    robot = plan.problem.robot
+    bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
+    for link in bodies.uncovered(robot.meshes):
+        problems.append(f"a shape of link '{link}' sticks out of the solid that stands for it")
     pairs = bodies.pairs()
     divisions = plan.problem.lattice.divisions
     clearances, separations, largest, checked = [], [], 0.0, 0
@@ -112,8 +121,7 @@ def _least_clearance(plan: Plan, shapes: list[Shape], placed: list[Array]) -> fl
         about = np.linalg.norm(centers - middle, axis=1) - radii
         near = about - spread - shape.radius <= min(least, float(about.min()) + spread)
         if near.any():
-            distances = sphere_distance(shape, at, centers[near], radii[near])
-            least = min(least, float(distances.min()))
+            least = min(least, least_sphere_distance(shape, at, centers[near], radii[near]))
     return least
 
 

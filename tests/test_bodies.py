@@ -18,8 +18,10 @@ from closed_forms import clearance, clearances
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ffsr_plan.bodies import Bodies, Shape, pose, separation
+from ffsr_plan import solids
+from ffsr_plan.bodies import Bodies, pose
 from ffsr_plan.robot import robot_from_urdf
+from ffsr_plan.separation import separation
 
 seeds = st.integers(0, 10_000)
 
@@ -77,13 +79,13 @@ def test_separation_is_positive_exactly_when_two_boxes_are_apart(seed):
     placed = [
         pin.SE3(pin.exp3(rng.normal(size=3)), far * rng.uniform(-1, 1, 3)) for far in (0.0, 2.0)
     ]
-    solids = [coal.Box(2 * h) for h in halves]
+    boxes = [coal.Box(2 * h) for h in halves]
     transforms = [coal.Transform3s(p.rotation, p.translation) for p in placed]
     distance = coal.distance(
-        solids[0], transforms[0], solids[1], transforms[1],
+        boxes[0], transforms[0], boxes[1], transforms[1],
         coal.DistanceRequest(), coal.DistanceResult(),
     )  # fmt: skip
-    shapes = [Shape("", np.eye(4), h, float(np.linalg.norm(h))) for h in halves]
+    shapes = [solids.box("", np.eye(4), h) for h in halves]
     poses = [p.homogeneous[None] for p in placed]
     found = separation(shapes[0], poses[0], shapes[1], poses[1])[0]
     assert (found > 0) == (distance > 0) or abs(distance) < 1e-6
@@ -91,8 +93,8 @@ def test_separation_is_positive_exactly_when_two_boxes_are_apart(seed):
 
 
 def test_separation_of_a_box_and_a_sphere_is_their_distance():
-    cube = Shape("", np.eye(4), np.ones(3), np.sqrt(3.0))
-    ball = Shape("", np.eye(4), None, 0.5)
+    cube = solids.box("", np.eye(4), np.ones(3))
+    ball = solids.ball("", np.eye(4), 0.5)
     away = np.eye(4)[None].copy()
     away[0, 0, 3] = 2.0
     here = np.eye(4)[None]
