@@ -104,7 +104,7 @@ def least_sphere_distance(shape: Shape, placed: Array, centers: Array, radii: Ar
 def _local(placed: Array, centers: Array) -> Array:
     """(N, K, 3) points in the shape's frame."""
     away = centers[None] - placed[:, None, :3, 3]
-    return np.einsum("nji,nkj->nki", placed[:, :3, :3], away)
+    return np.asarray(np.einsum("nji,nkj->nki", placed[:, :3, :3], away))
 
 
 def _simple_distance(shape: Shape, local: Array) -> Array:

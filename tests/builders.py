@@ -72,9 +72,7 @@ def random_robot(
         for k in range(int(rng.integers(1, depth + 1))):
             name = f"arm{arm}_{k}"
             reach = rng.uniform(-0.3, 0.3, 3)
-            body = inertial(
-                rng.uniform(0.2, 3), _moments(rng, 0.05), reach, rng.uniform(-3, 3, 3)
-            )
+            body = inertial(rng.uniform(0.2, 3), _moments(rng, 0.05), reach, rng.uniform(-3, 3, 3))
             shape = (
                 box(rng.uniform(0.04, 0.3, 3), reach, rng.uniform(-3, 3, 3))
                 if rng.random() < 0.7
