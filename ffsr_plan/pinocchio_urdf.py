@@ -39,6 +39,8 @@ def visual_model(model: pin.Model, text: str, folders: Sequence[str]) -> pin.Geo
     """
     root = ElementTree.fromstring(text)
     for link in root.findall("link"):
+        for collision in link.findall("collision"):
+            link.remove(collision)
         for visual in link.findall("visual"):
             mesh = visual.find("geometry/mesh")
             lost = mesh is not None and find(mesh.get("filename", ""), folders) is None

@@ -1,6 +1,7 @@
 """Collision shapes: capsules as they are, cylinders and meshes inside a solid, all on record."""
 
 import pickle
+from dataclasses import replace
 
 import coal
 import numpy as np
@@ -32,7 +33,7 @@ from ffsr_plan.collision import self_query
 from ffsr_plan.mesh_files import hull
 from ffsr_plan.robot import robot_from_urdf
 from ffsr_plan.shapes import Containers, convex, sharpen
-from ffsr_plan.solids import Shape, sphere_distance
+from ffsr_plan.solids import Shape, least_sphere_distance, sphere_distance
 
 seeds = st.integers(0, 10_000)
 MASS = inertial(2.0, (1.0, 1.0, 1.0))
@@ -381,6 +382,27 @@ def test_verification_notices_a_replacement_that_does_not_hold_the_original(arm_
         bodies = Bodies(robot.urdf, robot.srdf, forged)
         assert bodies.uncovered(robot.meshes) == [who]
     assert Bodies(robot.urdf, robot.srdf, robot.replacements).uncovered(robot.meshes) == []
+    problem = fp.Problem(
+        replace(robot, replacements=tuple(forged)), arm_plan.problem.scene,
+        arm_plan.problem.start, arm_plan.problem.goal, lattice=arm_plan.problem.lattice,
+    )  # fmt: skip
+    report = replace(arm_plan, problem=problem).verify(20)
+    assert any("'hand' sticks out" in problem for problem in report.problems)
+
+
+@given(seeds)
+@settings(max_examples=30)
+def test_distances_from_hulls_in_the_recheck_agree_with_those_of_trimesh(seed):
+    solid = blob(seed)
+    shape = Shape("", np.eye(4), np.array(solid.vertices))
+    centers = solid.center_mass + np.random.default_rng(seed).normal(size=(40, 3)) * 0.3
+    radii = np.linspace(0.01, 0.1, 40)
+    poses = np.tile(np.eye(4), (300, 1, 1))
+    poses[:, 0, 3] = np.linspace(-0.2, 0.2, 300)
+    found = sphere_distance(shape, poses, centers, radii)
+    true = inside_out(solid, centers - poses[7, :3, 3]) - radii
+    assert np.allclose(found[7], true, atol=1e-9)
+    assert least_sphere_distance(shape, poses, centers, radii) == pytest.approx(found.min())
 
 
 def test_a_page_and_pictures_can_be_made_of_all_kinds_of_shapes(arm_plan, tmp_path):
