@@ -30,7 +30,7 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.bodies import Bodies
 from ffsr_plan.collision import self_query
-from ffsr_plan.mesh_files import hull
+from ffsr_plan.mesh_files import hull, hull_corners
 from ffsr_plan.robot import robot_from_urdf
 from ffsr_plan.shapes import Containers, convex, sharpen
 from ffsr_plan.solids import Shape, least_sphere_distance, sphere_distance
@@ -272,6 +272,8 @@ def test_mesh_addresses_are_looked_up_in_packages_beside_the_urdf_and_as_files(t
      "flat.stl", "robot.urdf", "bad.dae"],
 )  # fmt: skip
 def test_a_mesh_that_cannot_be_used_is_named_with_its_link(tmp_path, address):
+    (tmp_path / "127.0.0.1").mkdir()
+    blob(0).export(tmp_path / "127.0.0.1" / "a.stl")  # where a part of the address would lead
     (tmp_path / "bad.stl").write_text("no mesh at all")
     (tmp_path / "bad.dae").write_text("<COLLADA>")
     trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2], [1, 2, 3]]).export(
@@ -317,6 +319,53 @@ def test_unknown_containers_are_refused():
             one_link(box((1, 1, 1)), containers=wrong)
     with pytest.raises(fp.InvalidInput, match="did you mean 'capsule'"):
         fp.load_robot("point", cylinders="capsules")
+
+
+def test_the_unit_that_a_dae_names_is_applied(tmp_path):
+    path = tmp_path / "blob.dae"
+    blob(5).export(path)
+    exported = path.read_text()
+    metres = hull_corners("blob.dae", [str(tmp_path)], "")
+    path.write_text(exported.replace("<up_axis>", "<unit name='inch' meter='0.0254'/><up_axis>"))
+    inches = hull_corners("blob.dae", [str(tmp_path)], "")
+    assert np.allclose(inches, 0.0254 * metres)
+
+
+@given(seeds)
+@settings(max_examples=10)
+def test_the_triangles_of_a_hull_face_outwards(seed):
+    corners, triangles = hull(blob(seed).vertices, "", "")
+    a, b, c = corners[triangles.T]
+    assert np.all(np.sum(np.cross(b - a, c - a) * (a - corners.mean(axis=0)), axis=1) > 0.0)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_solid_that_a_cylinder_sticks_out_of_is_found(kind):
+    robot = one_link(cylinder(0.1, 0.5), containers=Containers(cylinders=kind))
+    (good,) = robot.replacements
+    points = np.array(good.points)
+    narrow, short = points * (0.98, 0.98, 1.0), points * (1.0, 1.0, 0.98)
+    aside = points + np.array([1e-3, 0.0, 0.0])
+    for changed in (short, aside) if kind == "capsule" else (narrow, short, aside):
+        bad = good._replace(points=tuple(map(tuple, changed.tolist())))
+        assert Bodies(robot.urdf, "", [bad]).uncovered({}) == ["base"]
+    if kind == "capsule":
+        thin = good._replace(radius=good.radius - 1e-6)
+        assert Bodies(robot.urdf, "", [thin]).uncovered({}) == ["base"]
+    assert Bodies(robot.urdf, "", [good]).uncovered({}) == []
+
+
+def test_a_plan_keeps_what_its_cylinders_were_put_in(tmp_path):
+    robot = one_link(cylinder(0.1, 0.5), containers=Containers(cylinders="capsule"))
+    goal = robot.configuration((2, 0, 0))
+    plan = fp.plan(fp.Problem(robot, fp.Scene([[1.0, 0.5, 0.0]], [0.1]), robot.neutral(), goal,
+                              lattice=fp.Lattice(4)))  # fmt: skip
+    plan.save(tmp_path / "plan.json")
+    loaded = fp.Plan.load(tmp_path / "plan.json")
+    assert loaded == plan
+    assert loaded.problem.robot.containers == robot.containers
+    assert loaded.problem.robot.replacements == robot.replacements
+    assert loaded.verify(20).ok
 
 
 def chain(folder):
