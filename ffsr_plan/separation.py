@@ -15,6 +15,7 @@ from ffsr_plan.inputs import Array
 from ffsr_plan.solids import Shape, sphere_distance
 
 _FINE = 1e-7  # bounds are sharp to this [m], or to a tenth of the distance
+_MANY = 500
 _ROUNDS = 40  # of all configurations at once, before the rest is taken one by one
 
 
@@ -67,6 +68,8 @@ def _along_faces(a: Shape, b: Shape, rotation: Array, shift: Array) -> Array:
     """(N,) how far the second shape lies beyond a face of the first: sharp where faces are near."""
     normals, offsets = a.faces
     best = np.full(len(shift), -np.inf)
+    if len(normals) > _MANY:  # finely curved: no face is large enough to matter
+        return best
     for normal, offset in zip(normals, offsets, strict=True):
         reach = np.min(normal @ rotation @ b.points.T, axis=1)
         best = np.maximum(best, reach + shift @ normal - offset)

@@ -13,7 +13,8 @@ import numpy as np
 
 from ffsr_plan.inputs import Array
 
-_BATCH = 4096  # points whose distance from a polytope's triangles is worked out at a time
+_AT_ONCE = 200_000  # pairs of a point and a triangle that are worked out at a time
+_BATCH = 64  # points that are worked out before it is asked whether others can still be nearer
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,9 +76,8 @@ def sphere_distance(shape: Shape, placed: Array, centers: Array, radii: Array) -
     if shape.half is None and len(shape.points) > 2:
         flat = local.reshape(-1, 3)
         depth = _beyond_faces(shape, flat)
-        outside = np.flatnonzero(depth > 0.0)
-        for some in np.array_split(outside, 1 + len(outside) // _BATCH):
-            depth[some] = _from_triangles(shape.triangles, flat[some])
+        outside = depth > 0.0
+        depth[outside] = _from_triangles(shape.triangles, flat[outside])
         return np.asarray(depth.reshape(local.shape[:2]) - shape.swell - radii)
     return np.asarray(_simple_distance(shape, local) - shape.swell - radii)
 
@@ -134,19 +134,24 @@ def _from_segment(a: Array, b: Array, points: Array) -> Array:
 
 def _from_triangles(triangles: Array, points: Array) -> Array:
     """(n,) least distance of points (n, 3) from triangles (k, 3, 3)."""
-    least = np.full(len(points), np.inf)
-    for triangle in triangles:
-        a, b, c = triangle
-        normal = np.cross(b - a, c - a)
-        size = float(np.linalg.norm(normal))
-        over = np.full(len(points), size > 0.0)
-        for begin, end in ((a, b), (b, c), (c, a)):
-            least = np.minimum(least, _from_segment(begin, end, points))
-            over &= (points - begin) @ np.cross(normal, end - begin) >= 0.0
-        if size > 0.0:
-            height = np.abs((points - a) @ normal) / size
-            least = np.where(over, np.minimum(least, height), least)
-    return least
+    parts = np.array_split(points, 1 + len(points) * len(triangles) // _AT_ONCE)
+    return np.concatenate([_nearest_triangle(triangles, part) for part in parts])
+
+
+def _nearest_triangle(triangles: Array, points: Array) -> Array:
+    corners = [triangles[:, k] for k in range(3)]
+    a, b, c = corners
+    normal = np.cross(b - a, c - a)
+    size = np.linalg.norm(normal, axis=1)
+    away = points[:, None]
+    least = np.full((len(points), len(triangles)), np.inf)
+    over = np.broadcast_to(size > 0.0, least.shape).copy()
+    for begin, end in zip(corners, [b, c, a], strict=True):
+        least = np.minimum(least, _from_segment(begin, end, away))
+        inward = np.cross(normal, end - begin)
+        over &= points @ inward.T - np.sum(begin * inward, axis=1) >= 0.0
+    height = np.abs(points @ normal.T - np.sum(a * normal, axis=1)) / np.where(size > 0, size, 1.0)
+    return np.asarray(np.min(np.where(over, np.minimum(least, height), least), axis=1))
 
 
 def covers_points(shape: Shape, points: Array) -> bool:
