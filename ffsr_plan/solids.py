@@ -156,8 +156,9 @@ def _nearest_triangle(triangles: Array, points: Array) -> Array:
 
 def covers_points(shape: Shape, points: Array) -> bool:
     """Whether a shape holds all points (n, 3) of its own frame, to a nanometre."""
-    distance = sphere_distance(shape, np.eye(4)[None], points, np.zeros(len(points)))
-    return bool(np.all(distance <= 1e-9))
+    polytope = shape.half is None and len(shape.points) > 2
+    beyond = _beyond_faces(shape, points) if polytope else _simple_distance(shape, points)
+    return bool(np.all(beyond <= shape.swell + 1e-9))
 
 
 def covers_cylinder(shape: Shape, radius: float, length: float) -> bool:

@@ -20,8 +20,10 @@ from hypothesis import strategies as st
 
 from ffsr_plan import solids
 from ffsr_plan.bodies import Bodies, pose
+from ffsr_plan.mesh_files import hull
 from ffsr_plan.robot import robot_from_urdf
 from ffsr_plan.separation import separation
+from ffsr_plan.shapes import convex
 
 seeds = st.integers(0, 10_000)
 
@@ -100,3 +102,45 @@ def test_separation_of_a_box_and_a_sphere_is_their_distance():
     here = np.eye(4)[None]
     assert separation(cube, here, ball, away)[0] == pytest.approx(0.5)
     assert separation(ball, away, cube, here)[0] == pytest.approx(0.5)
+
+
+@given(seeds, st.sampled_from(["capsule", "prism", "box"]), st.sampled_from(["capsule", "prism"]))
+def test_separation_is_positive_for_solids_ten_micrometres_apart(seed, first, second):
+    rng = np.random.default_rng(seed)
+
+    def solid(kind):
+        radius, length = rng.uniform((0.03, 0.05), (0.2, 0.6))
+        if kind == "capsule":
+            return solids.capsule("", np.eye(4), radius, length), coal.Capsule(radius, length)
+        if kind == "box":
+            half = rng.uniform(0.03, 0.3, 3)
+            return solids.box("", np.eye(4), half), coal.Box(2 * half)
+        turn = np.arange(24) * np.pi / 12
+        ring = np.column_stack([radius * np.cos(turn), radius * np.sin(turn)])
+        points = np.vstack([np.insert(ring, 2, z, axis=1) for z in (-length, length)])
+        corners, triangles = hull(points, "", "")
+        return solids.Shape("", np.eye(4), corners), convex(corners, triangles)
+
+    (a, coal_a), (b, coal_b) = solid(first), solid(second)
+    parallel = seed % 2  # faces and axes side by side are the hardest
+    here = pin.SE3(pin.exp3(rng.normal(size=3)), rng.normal(size=3))
+    turn = np.eye(3) if parallel else pin.exp3(rng.normal(size=3))
+    towards = rng.normal(size=3)
+    towards /= np.linalg.norm(towards)
+
+    def planned(far):
+        there = here * pin.SE3(turn, far * towards)
+        transforms = [coal.Transform3s(p.rotation, p.translation) for p in (here, there)]
+        found = coal.distance(
+            coal_a, transforms[0], coal_b, transforms[1],
+            coal.DistanceRequest(), coal.DistanceResult(),
+        )  # fmt: skip
+        return found, there
+
+    low, high = 0.0, 3.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if planned(middle)[0] > 1e-5 else (middle, high)
+    distance, there = planned(high)
+    found = separation(a, here.homogeneous[None], b, there.homogeneous[None])[0]
+    assert 0.0 < found <= distance + 1e-9
