@@ -20,8 +20,9 @@ import ompl.util as ou
 from scenes import RESULTS, publish, random_problem, table
 
 import ffsr_plan as fp
-from ffsr_plan.bodies import Bodies, pose, sphere_distance
+from ffsr_plan.bodies import Bodies, pose
 from ffsr_plan.collision import ObstacleQuery
+from ffsr_plan.solids import sphere_distance
 
 FIRST_SEED = 2000
 DEFAULT, FINE = 0.01, 0.002  # of the plane's diagonal between two validity checks

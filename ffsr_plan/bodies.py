@@ -1,55 +1,96 @@
 """A second reading of a robot's URDF, for verification alone.
 
-It shares nothing with the planner: yourdfpy parses, and the kinematics, closed-form distances and
-velocities here are plain numpy over many configurations at once. Slow, simple, independent.
+It shares nothing with the planner: yourdfpy parses, and the kinematics here and the distances in
+`solids` and `separation` are plain numpy over many configurations at once. Slow, simple,
+independent. Collision shapes are read here, because yourdfpy refuses capsules.
+
+Where another solid stands for a cylinder or mesh, that solid is measured: the plan's clearances are
+defined by it. `Bodies.uncovered` tells whether it holds the original, so that what is free for the
+one is free for the other.
 """
 
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
-from itertools import combinations, product
-from typing import Any
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
 
 import numpy as np
 
 from ffsr_plan.inputs import Array
+from ffsr_plan.solids import Shape, ball, box, capsule, covers_cylinder, covers_points
 
-
-@dataclass(frozen=True, eq=False)
-class Shape:
-    """A collision shape: a sphere (`half` is None) or a box."""
-
-    link: str
-    placement: Array
-    """(4, 4) in the link's frame."""
-    half: Array | None
-    """(3,) half sides of a box [m]."""
-    radius: float
-    """Of the sphere, or of the sphere around the box [m]."""
+if TYPE_CHECKING:
+    from ffsr_plan.shapes import Replacement
 
 
 class Bodies:
-    """Links, joints, masses and shapes of a URDF."""
+    """Links, joints, masses and shapes of a URDF.
 
-    def __init__(self, urdf: str) -> None:
+    Args:
+        urdf: the text.
+        srdf: the SRDF text, empty for none.
+        replacements: the solids that stand for cylinders and meshes.
+    """
+
+    def __init__(self, urdf: str, srdf: str = "", replacements: Sequence[Replacement] = ()) -> None:
         import yourdfpy
 
+        root = ElementTree.fromstring(urdf)
+        self._collisions = [
+            (str(link.get("name")), number, collision)
+            for link in root.findall("link")
+            for number, collision in enumerate(link.findall("collision"))
+        ]
+        for link in root.findall("link"):
+            for shape in [*link.findall("collision"), *link.findall("visual")]:
+                link.remove(shape)
         robot = yourdfpy.URDF.load(
-            io.BytesIO(urdf.encode()), build_scene_graph=False, load_meshes=False
+            io.BytesIO(ElementTree.tostring(root)), build_scene_graph=False, load_meshes=False
         ).robot
+        self._exempt = {
+            frozenset((pair.get("link1"), pair.get("link2")))
+            for pair in ElementTree.fromstring(srdf or "<robot/>").iter("disable_collisions")
+        }
         self._children: dict[str, list[Any]] = {link.name: [] for link in robot.links}
         for joint in robot.joints:
             self._children[joint.parent].append(joint)
         heads = {joint.child for joint in robot.joints}
         self.root = next(link.name for link in robot.links if link.name not in heads)
         self.inertials = {link.name: link.inertial for link in robot.links if link.inertial}
+        instead = {(r.link, r.number): r for r in replacements}
         self.shapes = [
-            _shape(link.name, collision) for link in robot.links for collision in link.collisions
+            _shape(link, collision, instead.get((link, number)))
+            for link, number, collision in self._collisions
         ]
 
+    def uncovered(self, meshes: Mapping[str, Array]) -> list[str]:
+        """Links with a cylinder or mesh that sticks out of the solid that stands for it.
+
+        Args:
+            meshes: (n, 3) corners of the meshes' hulls by address, before the URDF's scale.
+        """
+        found = []
+        for shape, (link, _, collision) in zip(self.shapes, self._collisions, strict=True):
+            element = collision.find("geometry")[0]  # type: ignore[index]
+            if element.tag == "cylinder":
+                held = covers_cylinder(shape, *_floats(element, "radius", "length"))
+            elif element.tag == "mesh":
+                scale = np.array(element.get("scale", "1 1 1").split(), dtype=np.float64)
+                held = covers_points(shape, meshes[str(element.get("filename"))] * scale)
+            else:
+                continue
+            if not held:
+                found.append(link)
+        return found
+
     def pairs(self) -> list[tuple[Shape, Shape]]:
-        """Shapes that must not touch: not of one rigid body, nor of two that a joint links."""
+        """Shapes that must not touch: not of one rigid body, nor of two that a joint links.
+
+        Nor of two links that the SRDF exempts.
+        """
         body, carrier = {self.root: self.root}, {self.root: ""}
         waiting = [self.root]
         while waiting:
@@ -65,6 +106,7 @@ class Bodies:
             if body[a.link] != body[b.link]
             and carrier[body[a.link]] != body[b.link]
             and carrier[body[b.link]] != body[a.link]
+            and frozenset((a.link, b.link)) not in self._exempt
         ]
 
     def link_poses(self, base: Array, joints: dict[str, Array]) -> dict[str, Array]:
@@ -100,47 +142,6 @@ def pose(position: Array, quat_xyzw: Array) -> Array:
     return result
 
 
-def sphere_distance(shape: Shape, placed: Array, centers: Array, radii: Array) -> Array:
-    """(N, K) signed distance of a shape at poses (N, 4, 4) to spheres (K, 3), (K,)."""
-    if shape.half is None:
-        apart = placed[:, None, :3, 3] - centers[None]
-        return np.asarray(np.linalg.norm(apart, axis=2) - shape.radius - radii)
-    local = np.einsum("nji,nkj->nki", placed[:, :3, :3], centers[None] - placed[:, None, :3, 3])
-    beyond = np.abs(local) - shape.half
-    outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=2)
-    return np.asarray(outside + np.minimum(np.max(beyond, axis=2), 0.0) - radii)
-
-
-def separation(a: Shape, pose_a: Array, b: Shape, pose_b: Array) -> Array:
-    """(N,) lower bound on the distance of two shapes, positive exactly when they are apart.
-
-    Boxes by the separating-axis theorem, boxes and spheres in closed form.
-    """
-    if b.half is None:
-        center = pose_b[:, None, :3, 3]
-        each = [
-            sphere_distance(a, pose_a[n : n + 1], center[n], np.array([b.radius]))[0, 0]
-            for n in range(len(pose_a))
-        ]
-        return np.array(each)
-    if a.half is None:
-        return separation(b, pose_b, a, pose_a)
-    ra, rb = pose_a[:, :3, :3], pose_b[:, :3, :3]
-    apart = pose_b[:, :3, 3] - pose_a[:, :3, 3]
-    best = np.full(len(apart), -np.inf)
-    axes = [ra[:, :, k] for k in range(3)] + [rb[:, :, k] for k in range(3)]
-    axes += [np.cross(ra[:, :, i], rb[:, :, j]) for i, j in product(range(3), repeat=2)]
-    for axis in axes:
-        size = np.linalg.norm(axis, axis=1)
-        usable = size > 1e-9  # parallel edges span no axis of their own
-        axis = axis / np.where(usable, size, 1.0)[:, None]
-        reach = np.abs(np.einsum("ni,nij->nj", axis, ra)) @ a.half
-        reach += np.abs(np.einsum("ni,nij->nj", axis, rb)) @ b.half
-        gap = np.abs(np.sum(axis * apart, axis=1)) - reach
-        best = np.where(usable, np.maximum(best, gap), best)
-    return best
-
-
 def _displacement(joint: Any, value: Array) -> Array:  # noqa: ANN401 - yourdfpy has no types
     result = np.broadcast_to(np.eye(4), (len(value), 4, 4)).copy()
     axis = np.array([1.0, 0.0, 0.0]) if joint.axis is None else np.asarray(joint.axis, float)
@@ -155,9 +156,36 @@ def _displacement(joint: Any, value: Array) -> Array:  # noqa: ANN401 - yourdfpy
     return result
 
 
-def _shape(link: str, collision: Any) -> Shape:  # noqa: ANN401 - yourdfpy has no types
-    placement = np.eye(4) if collision.origin is None else np.asarray(collision.origin, float)
-    if collision.geometry.box is not None:
-        half = 0.5 * np.asarray(collision.geometry.box.size, float)
-        return Shape(link, placement, half, float(np.linalg.norm(half)))
-    return Shape(link, placement, None, float(collision.geometry.sphere.radius))
+def _shape(link: str, collision: ElementTree.Element, instead: Replacement | None) -> Shape:
+    placement = _placement(collision.find("origin"))
+    element = collision.find("geometry")[0]  # type: ignore[index]
+    if element.tag == "box":
+        size = np.array(str(element.get("size")).split(), dtype=np.float64)
+        return box(link, placement, 0.5 * size)
+    if element.tag == "sphere":
+        return ball(link, placement, *_floats(element, "radius"))
+    if element.tag == "capsule":
+        return capsule(link, placement, *_floats(element, "radius", "length"))
+    if instead is None:
+        raise ValueError(f"nothing on record stands for the {element.tag} of link '{link}'")
+    points = (np.array(instead.points) - placement[:3, 3]) @ placement[:3, :3]
+    return Shape(link, placement, points, instead.radius)
+
+
+def _floats(element: ElementTree.Element, *keys: str) -> list[float]:
+    return [float(str(element.get(key))) for key in keys]
+
+
+def _placement(origin: ElementTree.Element | None) -> Array:
+    """(4, 4) of an `<origin>`: turns about the fixed x, y and z axes, then the shift."""
+    result = np.eye(4)
+    if origin is None:
+        return result
+    for axis, angle in enumerate(origin.get("rpy", "0 0 0").split()):
+        cosine, sine = np.cos(float(angle)), np.sin(float(angle))
+        turn, (i, j) = np.eye(4), ((1, 2), (2, 0), (0, 1))[axis]
+        turn[i, i] = turn[j, j] = cosine
+        turn[j, i], turn[i, j] = sine, -sine
+        result = turn @ result
+    result[:3, 3] = np.array(origin.get("xyz", "0 0 0").split(), dtype=np.float64)
+    return result

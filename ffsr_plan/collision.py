@@ -19,6 +19,7 @@ from ffsr_plan.inputs import Array, IntArray
 from ffsr_plan.placements import Placements, shape_placements
 from ffsr_plan.robot import SpaceRobot
 from ffsr_plan.scene import Scene
+from ffsr_plan.shapes import sharpen
 
 
 class Nearest(NamedTuple):
@@ -54,6 +55,7 @@ class ObstacleQuery:
             for shape in robot.collision_model.geometryObjects
         ]
         self._request = coal.DistanceRequest()
+        sharpen(self._request)
         self._here, self._there = coal.Transform3s.Identity(), coal.Transform3s.Identity()
 
     def distances(self, configurations: Array) -> Array:
@@ -163,6 +165,8 @@ class SelfQuery:
         self._geometry = robot.collision_model
         self._data = robot.model.createData()
         self._geometry_data = self._geometry.createData()
+        for request in self._geometry_data.distanceRequests:
+            sharpen(request)
         ends = [(pair.first, pair.second) for pair in self._geometry.collisionPairs]
         self.pairs: IntArray = np.array(ends, dtype=np.int64).reshape(-1, 2)
         self.empty = not ends

@@ -154,20 +154,25 @@ def _view(plan: Plan) -> Array:
 
 
 def _silhouette(robot: SpaceRobot, q: Array, view: Array) -> list[Array]:
-    """Projected faces of boxes, and rims of spheres, of the collision shapes."""
+    """Projected outlines of the collision shapes."""
     data = robot.model.createData()
     geometry_data = robot.collision_model.createData()
     pin.updateGeometryPlacements(robot.model, data, robot.collision_model, geometry_data, q)
+    turn = np.linspace(0.0, 2.0 * np.pi, 40)
+    circle = np.column_stack([np.cos(turn), np.sin(turn)])
     polygons: list[Array] = []
     for shape, at in zip(robot.collision_model.geometryObjects, geometry_data.oMg, strict=True):
         solid: Any = shape.geometry
-        if isinstance(solid, coal.Sphere):
-            turn = np.linspace(0.0, 2.0 * np.pi, 40)
-            rim = max(solid.radius, 0.02) * np.column_stack([np.cos(turn), np.sin(turn)])
-            polygons.append(view @ at.translation + rim)
-            continue
-        corners = np.array(list(product((-1.0, 1.0), repeat=3))) * solid.halfSide
+        if isinstance(solid, coal.Convex):
+            corners = np.array(solid.points())
+        elif isinstance(solid, coal.Box):
+            corners = np.array(list(product((-1.0, 1.0), repeat=3))) * solid.halfSide
+        else:
+            half = solid.halfLength if isinstance(solid, coal.Capsule) else 0.0
+            corners = np.array([[0.0, 0.0, -half], [0.0, 0.0, half]])
         seen = (corners @ at.rotation.T + at.translation) @ view.T
+        if isinstance(solid, (coal.Sphere, coal.Capsule)):
+            seen = (seen[:, None] + max(solid.radius, 0.02) * circle).reshape(-1, 2)
         polygons.append(_hull(seen))
     return polygons
 

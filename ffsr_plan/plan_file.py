@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 from ffsr_plan.axes import Axis, Lattice
 from ffsr_plan.colony import History, Trails
 from ffsr_plan.errors import FfsrPlanError, InvalidInput
-from ffsr_plan.inputs import frozen, number
+from ffsr_plan.inputs import finite_array, frozen, number
 from ffsr_plan.planner import PLANNERS
 from ffsr_plan.problem import Problem
 from ffsr_plan.result import Plan
 from ffsr_plan.roadmap import Certificate
-from ffsr_plan.robot import robot_from_urdf
+from ffsr_plan.robot import SpaceRobot, robot_from_urdf
 from ffsr_plan.scene import Scene
+from ffsr_plan.shapes import Containers
 
 FORMAT = "ffsr-plan/1"
 _PLAIN = (
@@ -35,11 +36,7 @@ def to_dict(plan: Plan) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "problem": {
-            "robot": {
-                "name": problem.robot.name,
-                "urdf": problem.robot.urdf,
-                "package_dirs": list(problem.robot.package_dirs),
-            },
+            "robot": _robot_to_dict(problem.robot),
             "scene": {
                 "centers": problem.scene.centers.tolist(),
                 "radii": problem.scene.radii.tolist(),
@@ -69,15 +66,44 @@ def to_dict(plan: Plan) -> dict[str, Any]:
     }
 
 
+def _robot_to_dict(robot: SpaceRobot) -> dict[str, Any]:
+    """Everything that the robot was made from, meshes included, and what it made of its shapes."""
+    return {
+        "name": robot.name,
+        "urdf": robot.urdf,
+        "package_dirs": list(robot.package_dirs),
+        "srdf": robot.srdf,
+        "disabled_pairs": [list(pair) for pair in robot.disabled_pairs],
+        "containers": robot.containers._asdict(),
+        "meshes": {address: corners.tolist() for address, corners in robot.meshes.items()},
+        "replacements": [
+            {"link": r.link, "number": r.number, "shape": r.shape, "by": r.by, "excess": r.excess}
+            for r in robot.replacements
+        ],
+    }
+
+
+def _robot_from_dict(data: dict[str, Any]) -> SpaceRobot:
+    """The inverse; collision meshes come from the plan, not from their files."""
+    return robot_from_urdf(
+        data["urdf"], data["name"], data["package_dirs"],
+        srdf=data["srdf"],
+        containers=Containers(**data["containers"]),
+        meshes={
+            address: finite_array(f"mesh {address}", corners, (-1, 3))
+            for address, corners in data["meshes"].items()
+        },
+    )  # fmt: skip
+
+
 def from_dict(data: dict[str, Any]) -> Plan:
     """The inverse of `to_dict`."""
     given = data["problem"]
     settings = dict(data["planner"])
     lattice = given["lattice"]
     axes = {k: Axis(**lattice[k]) for k in ("lateral", "normal") if lattice[k] is not None}
-    robot = given["robot"]
     problem = Problem(
-        robot_from_urdf(robot["urdf"], robot["name"], robot["package_dirs"]),
+        _robot_from_dict(given["robot"]),
         Scene(given["scene"]["centers"], given["scene"]["radii"]),
         start=given["start"],
         goal=given["goal"],

@@ -21,6 +21,7 @@ from ffsr_plan.placements import Placements, shape_placements
 from ffsr_plan.scene import Scene
 
 _SLACK = 0.05  # between the clearance proven along a path and the least one met, relative
+_ITERATED = 1e-7  # travel [m] for distances that Coal iterates to 1e-8 (`shapes.sharpen`)
 _STILL = np.zeros(3)
 
 
@@ -40,7 +41,8 @@ class Prover:
         self._placed: dict[float, Placements] = {}
         self._corners = shape_placements(nominal.robot, nominal.configurations())
         self.speeds = self._travel.speeds
-        self.rounding = ROUNDING + self._travel.slack
+        closed_forms = bool(nominal.robot.primitives.exact.all())
+        self.rounding = ROUNDING + self._travel.slack + (0.0 if closed_forms else _ITERATED)
 
     @property
     def queries(self) -> int:
@@ -184,7 +186,7 @@ class _SelfEdge:
         self._prover, self._layer = prover, layer
         self._pairs = prover._self.pairs
         self._parts: dict[float, Array] = {}
-        self.rounding = ROUNDING
+        self.rounding = ROUNDING + _ITERATED
         self.speed = 2.0 * float(prover._travel.speeds_in_base[layer])
 
     def clearance(self, time: float) -> float:

@@ -15,10 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 from ffsr_plan import bundled
 from ffsr_plan.attitude import IDENTITY, from_angles, to_angles
 from ffsr_plan.errors import InvalidInput, unknown_name
-from ffsr_plan.inputs import FARTHEST, Array, finite_array, frozen, number, unit_quaternion
+from ffsr_plan.inputs import FARTHEST, Array, finite_array, frozen, number, one_of, unit_quaternion
 from ffsr_plan.kinematics import Tree
+from ffsr_plan.pinocchio_urdf import build_model, visual_model
 from ffsr_plan.primitives import Primitives, primitives
-from ffsr_plan.urdf_check import Counts, check_urdf
+from ffsr_plan.shapes import CONTAINERS, Containers, Replacement, collision_geometry
+from ffsr_plan.srdf import disabled_pairs
+from ffsr_plan.urdf_check import Counts, check_urdf, parse
 
 
 class Components(NamedTuple):
@@ -47,9 +50,21 @@ class SpaceRobot:
     """The URDF text that the robot was made from."""
     model: pin.Model
     collision_model: pin.GeometryModel
-    """Collision shapes, with the self-collision pairs: all but those of adjacent links."""
+    """Collision shapes, with the self-collision pairs: all but those of adjacent links and those
+    that the SRDF exempts."""
     visual_model: pin.GeometryModel
     package_dirs: tuple[str, ...] = ()
+    replacements: tuple[Replacement, ...] = ()
+    """Collision shapes that another solid stands for."""
+    containers: Containers = field(default_factory=Containers)
+    """What meshes and cylinders were put in."""
+    meshes: Mapping[str, Array] = field(default_factory=dict)
+    """(n, 3) corners of the convex hulls of the collision meshes, by their address in the URDF,
+    before its scale [m]: with these the robot can be made again without the files."""
+    srdf: str = ""
+    """The SRDF text, empty where there is none."""
+    disabled_pairs: tuple[tuple[str, str], ...] = ()
+    """Links that the SRDF allows to touch, sorted."""
     joint_names: tuple[str, ...] = field(init=False)
     lower: Array = field(init=False)
     """(nd,) lower joint limits, -inf for continuous joints."""
@@ -215,15 +230,33 @@ def robot_names() -> list[str]:
     return bundled.names("urdf", ".urdf")
 
 
-def load_robot(source: str | Path, package_dirs: Sequence[str | Path] = ()) -> SpaceRobot:
+def load_robot(
+    source: str | Path,
+    package_dirs: Sequence[str | Path] = (),
+    *,
+    srdf: str | Path | None = None,
+    meshes: str = "hull",
+    cylinders: str = "hull",
+) -> SpaceRobot:
     """Load a robot whose root link floats freely.
+
+    Boxes, spheres and capsules are taken as they are. A cylinder or a mesh is replaced by a solid
+    around it, and `SpaceRobot.replacements` says so.
 
     Args:
         source: name of a bundled robot (see `robot_names`), or path to a `.urdf` file.
-        package_dirs: folders in which `package://` mesh addresses are looked up.
+        package_dirs: folders in which `package://` and relative mesh addresses are looked up,
+            before the folder of the `.urdf` file.
+        srdf: path to an SRDF whose `<disable_collisions>` exempt pairs of links from the check for
+            self-collision; adjacent links are exempt in any case.
+        meshes: what stands for a mesh: `hull`, its convex hull, or `capsule`, one that contains it.
+        cylinders: what stands for a cylinder: `hull`, a prism of 24 sides around it (at most
+            0.9 % of the radius larger), or `capsule`, one that contains it (the one with the least
+            excess; 41 % of the radius, more for short ones).
 
     Raises:
-        InvalidInput: no such robot or file, or a URDF that cannot be used, with the link or joint.
+        InvalidInput: no such robot or file, or a URDF, SRDF or mesh that cannot be used, with the
+            link or joint.
     """
     if not isinstance(source, (str, Path)):
         raise InvalidInput("robot", source, "a name or a path")
@@ -234,35 +267,60 @@ def load_robot(source: str | Path, package_dirs: Sequence[str | Path] = ()) -> S
             raise unknown_name("robot", str(source), [*robot_names(), "or a path to a .urdf file"])
         if not path.is_file():
             raise InvalidInput("robot", str(source), "a bundled robot or an existing .urdf file")
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInput("robot", str(source), f"a readable UTF-8 file ({error})") from None
-    folders = [str(Path(p)) for p in package_dirs] or [str(path.parent)]
-    return robot_from_urdf(text, path.stem, folders)
+    if srdf is not None and not isinstance(srdf, (str, Path)):
+        raise InvalidInput("srdf", srdf, "a path")
+    folders = [*(str(Path(p)) for p in package_dirs), str(path.parent)]
+    return robot_from_urdf(
+        _read("robot", path), path.stem, folders,
+        srdf="" if srdf is None else _read("srdf", Path(srdf)),
+        containers=Containers(meshes, cylinders),
+    )  # fmt: skip
 
 
-def robot_from_urdf(text: str, name: str, package_dirs: Sequence[str] = ()) -> SpaceRobot:
-    """Make a robot from URDF text; see `load_robot`."""
+def robot_from_urdf(
+    text: str,
+    name: str,
+    package_dirs: Sequence[str] = (),
+    *,
+    srdf: str = "",
+    containers: Containers | None = None,
+    meshes: Mapping[str, Array] | None = None,
+) -> SpaceRobot:
+    """Make a robot from URDF and SRDF texts; see `load_robot`.
+
+    `meshes` holds hull corners by address (see `SpaceRobot.meshes`); these need no file.
+    """
     counts = check_urdf(text, name)
+    containers = Containers() if containers is None else containers
+    for what, kind in containers._asdict().items():
+        one_of(what, kind, CONTAINERS)
     folders = list(package_dirs)
-    try:
-        model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
-        collision = pin.buildGeomFromUrdfString(
-            model, text, pin.GeometryType.COLLISION, package_dirs=folders
-        )
-        visual = pin.buildGeomFromUrdfString(
-            model, text, pin.GeometryType.VISUAL, package_dirs=folders
-        )
-    except ValueError as error:
-        reason = str(error).strip().splitlines()[-1]
-        raise InvalidInput(name, reason, "a URDF that Pinocchio can load") from None
+    corners = dict(meshes or {})
+    model = build_model(text, name)
+    collision, replacements = collision_geometry(
+        model, parse(text, name), name, folders, containers, corners
+    )
     _check_loaded(name, model, collision, counts)
-    for a, first in enumerate(collision.geometryObjects):
-        for b in range(a):
-            if not _adjacent(model, first.parentJoint, collision.geometryObjects[b].parentJoint):
-                collision.addCollisionPair(pin.CollisionPair(b, a))
-    return SpaceRobot(name, text, model, collision, visual, tuple(folders))
+    links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
+    disabled = disabled_pairs(srdf, f"{name}, SRDF", links)
+    shapes = collision.geometryObjects
+    for a, first in enumerate(shapes):
+        for b, second in enumerate(shapes[:a]):
+            ends = sorted(model.frames[g.parentFrame].name for g in (first, second))
+            if tuple(ends) in disabled or _adjacent(model, first.parentJoint, second.parentJoint):
+                continue
+            collision.addCollisionPair(pin.CollisionPair(b, a))
+    return SpaceRobot(
+        name, text, model, collision, visual_model(model, text, folders), tuple(folders),
+        replacements, containers, corners, srdf, disabled,
+    )  # fmt: skip
+
+
+def _read(what: str, path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidInput(what, str(path), f"a readable UTF-8 file ({error})") from None
 
 
 def _adjacent(model: pin.Model, i: int, j: int) -> bool:

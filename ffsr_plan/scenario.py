@@ -45,6 +45,10 @@ class RobotTable(_Table):
     """Name of a bundled robot, or a path relative to the scenario file."""
     mode: str = MODES[0]
     package_dirs: list[str] = []
+    srdf: str | None = None
+    """Path of an SRDF, relative to the scenario file."""
+    meshes: str = "hull"
+    cylinders: str = "hull"
 
 
 class PoseTable(_Table):
@@ -197,6 +201,9 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
     robot = load_robot(
         folder / source if source.endswith(".urdf") else source,
         [folder / entry for entry in file.robot.package_dirs],
+        srdf=None if file.robot.srdf is None else folder / file.robot.srdf,
+        meshes=file.robot.meshes,
+        cylinders=file.robot.cylinders,
     )
     if file.goal.attitude is not None and file.robot.mode == "free-flying":
         raise InvalidInput(

@@ -14,7 +14,13 @@ import numpy as np
 
 from ffsr_plan.errors import InvalidInput
 
-SHAPES = ("box", "sphere")
+SHAPES: dict[str, dict[str, int]] = {
+    "box": {"size": 3},
+    "sphere": {"radius": 1},
+    "capsule": {"radius": 1, "length": 1},
+    "cylinder": {"radius": 1, "length": 1},
+    "mesh": {},
+}  # positive sizes by attribute, and how many numbers each holds
 JOINTS = ("revolute", "continuous", "prismatic", "fixed")
 
 
@@ -31,22 +37,32 @@ def check_urdf(text: str, where: str) -> Counts:
     Raises:
         InvalidInput: naming the link or joint, the value and what is allowed.
     """
+    root = parse(text, where)
+    links = root.findall("link")
+    for link in links:
+        _check_inertia(link, f"{where}, link '{link.get('name')}'")
+        for element in link.findall("collision"):
+            _check_collision(element, f"{where}, link '{link.get('name')}', collision")
+    for joint in root.findall("joint"):
+        _check_joint(joint, f"{where}, joint '{joint.get('name')}'")
+    return Counts(len(links), len(root.findall("link/collision")))
+
+
+def parse(text: str, where: str) -> ElementTree.Element:
+    """The `<robot>` element of a URDF or SRDF; entities are refused, not expanded.
+
+    Raises:
+        InvalidInput: a document type, not XML, or another element at the top.
+    """
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise InvalidInput(where, "a DOCTYPE or ENTITY", "plain URDF without a document type")
+        raise InvalidInput(where, "a DOCTYPE or ENTITY", "plain XML without a document type")
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
         raise InvalidInput(where, str(error), "well-formed XML") from None
     if root.tag != "robot":
         raise InvalidInput(where, f"<{root.tag}>", "a <robot> element at the top")
-    links = root.findall("link")
-    for link in links:
-        _check_inertia(link, f"{where}, link '{link.get('name')}'")
-        for element in link.findall("collision/geometry/*"):
-            _check_shape(element, f"{where}, link '{link.get('name')}', collision")
-    for joint in root.findall("joint"):
-        _check_joint(joint, f"{where}, joint '{joint.get('name')}'")
-    return Counts(len(links), len(root.findall("link/collision")))
+    return root
 
 
 def _numbers(where: str, text: str | None, count: int) -> list[float]:
@@ -90,13 +106,27 @@ def _check_inertia(link: ElementTree.Element, where: str) -> None:
         )
 
 
-def _check_shape(element: ElementTree.Element, where: str) -> None:
-    if element.tag not in SHAPES:
-        raise InvalidInput(where, element.tag, f"collision shapes {' and '.join(SHAPES)}")
-    key, count = ("size", 3) if element.tag == "box" else ("radius", 1)
-    sizes = _numbers(f"{where} {element.tag}, {key}", element.get(key), count)
-    if min(sizes) <= 0.0:
-        raise InvalidInput(f"{where} {element.tag}, {key}", sizes, "greater than 0 m")
+def _check_collision(collision: ElementTree.Element, where: str) -> None:
+    origin = collision.find("origin")
+    for key in ("xyz", "rpy"):
+        if origin is not None and origin.get(key) is not None:
+            _numbers(f"{where} origin, {key}", origin.get(key), 3)
+    shapes = collision.findall("geometry/*")
+    if len(shapes) != 1 or shapes[0].tag not in SHAPES:
+        found = ", ".join(shape.tag for shape in shapes) or None
+        raise InvalidInput(where, found, f"one shape of: {', '.join(SHAPES)}")
+    shape = shapes[0]
+    where = f"{where} {shape.tag}"
+    for key, count in SHAPES[shape.tag].items():
+        sizes = _numbers(f"{where}, {key}", shape.get(key), count)
+        if min(sizes) <= 0.0:
+            raise InvalidInput(f"{where}, {key}", sizes, "greater than 0 m")
+    if shape.tag == "mesh":
+        if not shape.get("filename"):
+            raise InvalidInput(f"{where}, filename", shape.get("filename"), "the address of a file")
+        scale = _numbers(f"{where}, scale", shape.get("scale", "1 1 1"), 3)
+        if 0.0 in scale:
+            raise InvalidInput(f"{where}, scale", scale, "three numbers other than 0")
 
 
 def _check_joint(joint: ElementTree.Element, where: str) -> None:

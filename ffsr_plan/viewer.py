@@ -184,11 +184,13 @@ def _add_robot(
     q: Array,
     ghost: int | None = None,
 ) -> None:
-    """Visual shapes (collision shapes where there are none), one node a joint, placed at `q`."""
+    """Visual shapes (of a link without any, its collision shapes), one node a joint, at `q`."""
     import meshcat.geometry as mg
 
-    model = robot.visual_model if robot.visual_model.ngeoms else robot.collision_model
-    for k, shape in enumerate(model.geometryObjects):
+    visible = list(robot.visual_model.geometryObjects)
+    seen = {shape.parentFrame for shape in visible}
+    visible += [g for g in robot.collision_model.geometryObjects if g.parentFrame not in seen]
+    for k, shape in enumerate(visible):
         red, green, blue, _ = (round(255 * float(c)) for c in shape.meshColor)
         material = (
             mg.MeshPhongMaterial(color=(red << 16) + (green << 8) + blue, shininess=50)
@@ -221,6 +223,11 @@ def _solids(shape: pin.GeometryObject) -> list[tuple[Any, Array]]:
         if isinstance(solid, coal.Capsule):
             parts += [(_sphere(radius), _translation([0.0, 0.0, z])) for z in (-half, half)]
         return parts
+    if isinstance(solid, coal.Convex):
+        corners = np.array(solid.points())
+        faces = [solid.polygons(k) for k in range(solid.num_polygons)]
+        loose = corners[[[t[0], t[1], t[2]] for t in faces]].reshape(-1, 3)  # so edges stay sharp
+        return [(mg.TriangularMeshGeometry(loose, np.arange(len(loose)).reshape(-1, 3)), np.eye(4))]
     faces = [solid.tri_indices(k) for k in range(solid.num_tris)]
     triangles = np.array([[t[0], t[1], t[2]] for t in faces])
     vertices = np.array(solid.vertices()) * np.asarray(shape.meshScale)

@@ -22,6 +22,18 @@ def sphere(radius, xyz=(0.0, 0.0, 0.0)):
     return _shape(f"<sphere radius='{radius!r}'/>", xyz, (0.0, 0.0, 0.0))
 
 
+def capsule(radius, length, xyz=(0.0, 0.0, 0.0), rpy=(0.0, 0.0, 0.0)):
+    return _shape(f"<capsule radius='{radius!r}' length='{length!r}'/>", xyz, rpy)
+
+
+def cylinder(radius, length, xyz=(0.0, 0.0, 0.0), rpy=(0.0, 0.0, 0.0)):
+    return _shape(f"<cylinder radius='{radius!r}' length='{length!r}'/>", xyz, rpy)
+
+
+def mesh(address, scale=(1.0, 1.0, 1.0), xyz=(0.0, 0.0, 0.0), rpy=(0.0, 0.0, 0.0)):
+    return _shape(f"<mesh filename='{address}' scale='{_text(scale)}'/>", xyz, rpy)
+
+
 def link(name, *parts):
     return f"<link name='{name}'>{''.join(parts)}</link>"
 
@@ -39,9 +51,15 @@ def urdf(*parts):
     return f"<robot name='made'>{''.join(parts)}</robot>"
 
 
-def random_robot(seed, kinds=("revolute", "continuous", "prismatic"), arms=2, depth=3):
-    """A tree of boxes and spheres with moderate, physical inertias."""
-    rng = np.random.default_rng(seed)
+def random_robot(
+    seed, kinds=("revolute", "continuous", "prismatic"), arms=2, depth=3, solids=(), **options
+):
+    """A tree of boxes and spheres with moderate, physical inertias.
+
+    `solids` (functions of a radius and a length: `capsule`, `cylinder`) take the place of every
+    other shape; `options` go to `robot_from_urdf`.
+    """
+    rng, more = np.random.default_rng(seed), np.random.default_rng(seed + 1)
     parts = [
         link(
             "base",
@@ -54,17 +72,17 @@ def random_robot(seed, kinds=("revolute", "continuous", "prismatic"), arms=2, de
         for k in range(int(rng.integers(1, depth + 1))):
             name = f"arm{arm}_{k}"
             reach = rng.uniform(-0.3, 0.3, 3)
-            parts.append(
-                link(
-                    name,
-                    inertial(
-                        rng.uniform(0.2, 3), _moments(rng, 0.05), reach, rng.uniform(-3, 3, 3)
-                    ),
-                    box(rng.uniform(0.04, 0.3, 3), reach, rng.uniform(-3, 3, 3))
-                    if rng.random() < 0.7
-                    else sphere(float(rng.uniform(0.03, 0.15)), reach),
-                )
+            body = inertial(rng.uniform(0.2, 3), _moments(rng, 0.05), reach, rng.uniform(-3, 3, 3))
+            shape = (
+                box(rng.uniform(0.04, 0.3, 3), reach, rng.uniform(-3, 3, 3))
+                if rng.random() < 0.7
+                else sphere(float(rng.uniform(0.03, 0.15)), reach)
             )
+            if solids and more.random() < 0.7:
+                solid = solids[int(more.integers(len(solids)))]
+                radius, length = more.uniform((0.02, 0.02), (0.1, 0.4)).tolist()
+                shape = solid(radius, length, reach, more.uniform(-3, 3, 3))
+            parts.append(link(name, body, shape))
             axis = rng.normal(size=3)
             offset = rng.uniform(-0.5, 0.5, 3) + (
                 np.sign(rng.normal(size=3)) * 0.3 if k == 0 else 0
@@ -76,7 +94,7 @@ def random_robot(seed, kinds=("revolute", "continuous", "prismatic"), arms=2, de
                 )
             )  # fmt: skip
             parent = name
-    return robot_from_urdf(urdf(*parts), f"random_{seed}")
+    return robot_from_urdf(urdf(*parts), f"random_{seed}", **options)
 
 
 def random_configuration(robot, rng, spread=2.0):

@@ -6,14 +6,18 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from ffsr_plan.bodies import Bodies, pose, sphere_distance
+from ffsr_plan.bodies import Bodies, pose
+from ffsr_plan.solids import sphere_distance
 
 
 def shape_distance(shape, pose, center, radius):
-    """Signed distance of a Coal sphere or box at `pose` (SE3) to a sphere."""
+    """Signed distance of a Coal sphere, capsule or box at `pose` (SE3) to a sphere."""
     local = pose.rotation.T @ (np.asarray(center) - pose.translation)
     if isinstance(shape, coal.Sphere):
         return math.dist(local, (0, 0, 0)) - shape.radius - radius
+    if isinstance(shape, coal.Capsule):
+        level = min(max(local[2], -shape.halfLength), shape.halfLength)
+        return math.dist(local, (0, 0, level)) - shape.radius - radius
     outside = [max(abs(x) - h, 0.0) for x, h in zip(local, shape.halfSide, strict=True)]
     inside = max(abs(x) - h for x, h in zip(local, shape.halfSide, strict=True))
     return math.hypot(*outside) + min(inside, 0.0) - radius
@@ -32,7 +36,8 @@ def clearance(robot, scene, q):
 
 def clearances(robot, scene, q):
     """(N,) clearances of (N, nq) configurations, through the reading of the URDF that verifies."""
-    bodies, values = Bodies(robot.urdf), robot.joint_values(q)
+    bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
+    values = robot.joint_values(q)
     joints = {name: values[:, k] for k, name in enumerate(robot.joint_names)}
     poses = bodies.link_poses(pose(q[:, :3], q[:, 3:7]), joints)
     each = [

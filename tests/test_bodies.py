@@ -18,8 +18,12 @@ from closed_forms import clearance, clearances
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ffsr_plan.bodies import Bodies, Shape, pose, separation
+from ffsr_plan import solids
+from ffsr_plan.bodies import Bodies, pose
+from ffsr_plan.mesh_files import hull
 from ffsr_plan.robot import robot_from_urdf
+from ffsr_plan.separation import separation
+from ffsr_plan.shapes import convex
 
 seeds = st.integers(0, 10_000)
 
@@ -77,13 +81,13 @@ def test_separation_is_positive_exactly_when_two_boxes_are_apart(seed):
     placed = [
         pin.SE3(pin.exp3(rng.normal(size=3)), far * rng.uniform(-1, 1, 3)) for far in (0.0, 2.0)
     ]
-    solids = [coal.Box(2 * h) for h in halves]
+    boxes = [coal.Box(2 * h) for h in halves]
     transforms = [coal.Transform3s(p.rotation, p.translation) for p in placed]
     distance = coal.distance(
-        solids[0], transforms[0], solids[1], transforms[1],
+        boxes[0], transforms[0], boxes[1], transforms[1],
         coal.DistanceRequest(), coal.DistanceResult(),
     )  # fmt: skip
-    shapes = [Shape("", np.eye(4), h, float(np.linalg.norm(h))) for h in halves]
+    shapes = [solids.box("", np.eye(4), h) for h in halves]
     poses = [p.homogeneous[None] for p in placed]
     found = separation(shapes[0], poses[0], shapes[1], poses[1])[0]
     assert (found > 0) == (distance > 0) or abs(distance) < 1e-6
@@ -91,10 +95,52 @@ def test_separation_is_positive_exactly_when_two_boxes_are_apart(seed):
 
 
 def test_separation_of_a_box_and_a_sphere_is_their_distance():
-    cube = Shape("", np.eye(4), np.ones(3), np.sqrt(3.0))
-    ball = Shape("", np.eye(4), None, 0.5)
+    cube = solids.box("", np.eye(4), np.ones(3))
+    ball = solids.ball("", np.eye(4), 0.5)
     away = np.eye(4)[None].copy()
     away[0, 0, 3] = 2.0
     here = np.eye(4)[None]
     assert separation(cube, here, ball, away)[0] == pytest.approx(0.5)
     assert separation(ball, away, cube, here)[0] == pytest.approx(0.5)
+
+
+@given(seeds, st.sampled_from(["capsule", "prism", "box"]), st.sampled_from(["capsule", "prism"]))
+def test_separation_is_positive_for_solids_ten_micrometres_apart(seed, first, second):
+    rng = np.random.default_rng(seed)
+
+    def solid(kind):
+        radius, length = rng.uniform((0.03, 0.05), (0.2, 0.6))
+        if kind == "capsule":
+            return solids.capsule("", np.eye(4), radius, length), coal.Capsule(radius, length)
+        if kind == "box":
+            half = rng.uniform(0.03, 0.3, 3)
+            return solids.box("", np.eye(4), half), coal.Box(2 * half)
+        turn = np.arange(24) * np.pi / 12
+        ring = np.column_stack([radius * np.cos(turn), radius * np.sin(turn)])
+        points = np.vstack([np.insert(ring, 2, z, axis=1) for z in (-length, length)])
+        corners, triangles = hull(points, "", "")
+        return solids.Shape("", np.eye(4), corners), convex(corners, triangles)
+
+    (a, coal_a), (b, coal_b) = solid(first), solid(second)
+    parallel = seed % 2  # faces and axes side by side are the hardest
+    here = pin.SE3(pin.exp3(rng.normal(size=3)), rng.normal(size=3))
+    turn = np.eye(3) if parallel else pin.exp3(rng.normal(size=3))
+    towards = rng.normal(size=3)
+    towards /= np.linalg.norm(towards)
+
+    def planned(far):
+        there = here * pin.SE3(turn, far * towards)
+        transforms = [coal.Transform3s(p.rotation, p.translation) for p in (here, there)]
+        found = coal.distance(
+            coal_a, transforms[0], coal_b, transforms[1],
+            coal.DistanceRequest(), coal.DistanceResult(),
+        )  # fmt: skip
+        return found, there
+
+    low, high = 0.0, 3.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if planned(middle)[0] > 1e-5 else (middle, high)
+    distance, there = planned(high)
+    found = separation(a, here.homogeneous[None], b, there.homogeneous[None])[0]
+    assert 0.0 < found <= distance + 1e-9

@@ -3,8 +3,8 @@
 import numpy as np
 import pinocchio as pin
 import pytest
-from builders import random_configuration, random_robot
-from closed_forms import shape_distance
+from builders import capsule, cylinder, random_configuration, random_robot
+from closed_forms import clearances, shape_distance
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -103,3 +103,20 @@ def test_shapes_are_placed_where_pinocchio_places_them(seed):
         for i, pose in enumerate(geometry.oMg):
             assert placed.rotations[k, i] == pytest.approx(pose.rotation, abs=1e-12)
             assert placed.positions[k, i] == pytest.approx(pose.translation, abs=1e-12)
+
+
+@given(seeds)
+@settings(max_examples=40)
+def test_hulls_are_searched_through_the_boxes_around_them(seed):
+    """The nearest box need not be that of the nearest hull: all that may be nearer are measured."""
+    robot, rng = random_robot(seed, solids=(capsule, cylinder)), np.random.default_rng(seed)
+    scene = mixed_scene(rng, 60)
+    q = np.array([random_configuration(robot, rng, spread=3.0) for _ in range(8)])
+    query = ObstacleQuery(robot, scene)
+    exact = clearances(robot, scene, q)
+    assert query.distances(q) == pytest.approx(exact, abs=1e-7)
+    placed = shape_placements(robot, q)
+    for k in range(len(q)):
+        least = query.links_at(placed, k, np.zeros(3)).min()
+        assert least <= exact[k] + 1e-12
+        assert query.nearest(q[k]).distance == pytest.approx(exact[k], abs=1e-7)
