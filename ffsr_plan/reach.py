@@ -58,16 +58,7 @@ class ReachBound:
     """The bounds for one robot, ready for any motion of its joints."""
 
     def __init__(self, model: pin.Model) -> None:
-        self._tree = tree = Tree(model)
-        # the axes of a joint and of the last turning one before it stand at a constant angle
-        self._before = np.zeros(len(tree.parents), dtype=np.int64)
-        for level in tree.levels:
-            parents = tree.parents[level]
-            self._before[level] = np.where(tree.prismatic[parents], self._before[parents], parents)
-        neutral = tree.poses(np.zeros((1, len(tree.parents) - 1))).rotations[0]
-        axes = turned(neutral, tree.axes)
-        self._cosine = np.abs(np.sum(axes * axes[self._before], axis=1))
-        self._sine = np.linalg.norm(cross(axes, axes[self._before]), axis=1)
+        self._tree = Tree(model)
 
     def over(self, joint_values: Array, joint_rates: Array, lengths: Array) -> Links:
         """All links over intervals around joint values (K, nd), at rates (K, nd), lengths (K,)."""
@@ -86,16 +77,14 @@ class ReachBound:
         angular_now = np.linalg.norm(velocities.angular, axis=-1)
         axes = turned(poses.rotations, tree.axes)
         across_now = np.linalg.norm(cross(velocities.angular[:, tree.parents], axes), axis=-1)
-        angular, angular_change, across = np.zeros((3, *rates.shape))
+        angular, angular_change = np.zeros((2, *rates.shape))
         distance, speed, bend = np.zeros((3, *rates.shape))
         for j in tree.levels:
             p = tree.parents[j]
             turning, offset = angular[:, p], offsets[:, j]
             # |w_p x s_j|: what the parent's rotation has across the joint's axis
-            tilted = self._cosine[j] * across[:, self._before[j]] + self._sine[j] * turning
-            growing = across_now[:, j] + half * angular_change[:, p]
-            across[:, j] = np.minimum(np.minimum(turning, tilted), growing)
-            angular_change[:, j] = angular_change[:, p] + across[:, j] * turns[:, j]
+            across = np.minimum(turning, across_now[:, j] + half * angular_change[:, p])
+            angular_change[:, j] = angular_change[:, p] + across * turns[:, j]
             angular[:, j] = np.minimum(
                 turning + turns[:, j], angular_now[:, j] + half * angular_change[:, j]
             )
@@ -107,7 +96,7 @@ class ReachBound:
                 speed[:, p] + turning * offset + slides[:, j],
                 bend[:, p]
                 + (angular_change[:, p] + turning**2) * offset
-                + 2.0 * across[:, j] * slides[:, j],
+                + 2.0 * across * slides[:, j],
             )
         reach = Reach(distance, speed, bend)
         return Links(poses, velocities, half, reach, angular, angular_change)

@@ -290,14 +290,6 @@ TERMS = {
         ),
         np.array([0.0, -0.0]), np.array([0.02, 0.02]), turn=STILL,
     ),
-    "a link's axis that its grandparent turns": Way(
-        put_together(
-            body(1.0, 1.0), [],
-            [limb("revolute"), limb("revolute", X, parent=1),
-             limb("revolute", X, shapes=[dot(0.5**0.5, 0.0, -(0.5**0.5))], parent=2)],
-        ),
-        np.zeros(3), np.array([0.02, 0.0, 0.02]), turn=STILL,
-    ),
     "centripetal acceleration of the base's turn": Way(
         put_together(body(1.0, 1.0), [dot(x=1.0)], []),
         np.zeros(0), np.zeros(0), turn=np.array([0.0, 0.0, 0.05]),
@@ -363,7 +355,6 @@ TERMS = {
 
 SIDE_BY_SIDE = {
     "a link's axis that its parent turns": 0.7,
-    "a link's axis that its grandparent turns": 0.7,
     "a reaction to a top that spins along its carrier's axis, but only for a moment": 0.3,
     "a base that slows down as a mass leaves its centre": 0.2,
     "a base that a wheel spins while a rod turns": 0.35,
