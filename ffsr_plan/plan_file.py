@@ -23,7 +23,7 @@ from ffsr_plan.robot import SpaceRobot, robot_from_urdf
 from ffsr_plan.scene import Scene
 from ffsr_plan.shapes import Containers
 
-FORMAT = "ffsr-plan/1"
+FORMAT = "ffsr-plan/2"
 _PLAIN = (
     "mode", "delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight",
     "tolerance",

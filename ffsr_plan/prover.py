@@ -6,6 +6,7 @@ of one's choice. The lattice asks for its nodes, the refinement for points betwe
 
 from __future__ import annotations
 
+import copy
 from itertools import pairwise
 
 import numpy as np
@@ -43,6 +44,12 @@ class Prover:
         self.speeds = self._travel.speeds
         closed_forms = bool(nominal.robot.primitives.exact.all())
         self.rounding = ROUNDING + self._travel.slack + (0.0 if closed_forms else _ITERATED)
+
+    def among(self, scene: Scene) -> Prover:
+        """The same motion among other obstacles; what does not depend on them is shared."""
+        twin = copy.copy(self)
+        twin._obstacles = ObstacleQuery(self._motion.robot, scene)
+        return twin
 
     @property
     def queries(self) -> int:

@@ -232,7 +232,7 @@ def test_an_edited_plan_file_is_refused(fig2a_plan, tmp_path, key):
 def test_a_file_that_is_no_plan_is_refused(tmp_path):
     for text in ("[1, 2]", "{}", '{"format": "ffsr-plan/99"}'):
         (tmp_path / "plan.json").write_text(text)
-        with pytest.raises(fp.InvalidInput, match="format 'ffsr-plan/1'"):
+        with pytest.raises(fp.InvalidInput, match="format 'ffsr-plan/2'"):
             fp.Plan.load(tmp_path / "plan.json")
     with pytest.raises(fp.InvalidInput, match="FileNotFoundError"):
         fp.Plan.load(tmp_path / "missing.json")
@@ -269,7 +269,7 @@ def test_a_malformed_plan_file_is_refused_even_with_a_fitting_digest(fig2a_plan,
 
 
 @pytest.mark.parametrize(
-    "text", ['{"format": "ffsr-plan/1", "a": NaN}', "[" * 100_000, '{"a": ' + "1" * 5001 + "}"]
+    "text", ['{"format": "ffsr-plan/2", "a": NaN}', "[" * 100_000, '{"a": ' + "1" * 5001 + "}"]
 )
 def test_hostile_json_is_refused(tmp_path, text):
     (tmp_path / "plan.json").write_text(text)
