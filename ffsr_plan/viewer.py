@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 SECONDS = 12.0  # how long the motion is shown; a plan has no time law of its own
 _FRAMES_PER_EDGE = 8
-_TRIANGLES = 600_000  # of all obstacles together; many of them are drawn a little less round
+_TRIANGLES = 90_000  # of near and of far obstacles; where they are many, they are less round
 _START, _GOAL, _OBSTACLE, _FAR = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
 _FEW, _NEAR = 60, 0.8  # obstacles that are all drawn solid; beyond that, only those so near [m]
 _TRACK, _TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)
@@ -149,9 +149,10 @@ def _add_obstacles(viewer: Any, plan: Plan) -> None:  # noqa: ANN401 - meshcat
     near = plan.obstacles_near(_NEAR if len(scene) > _FEW else np.inf)
     solid = mg.MeshPhongMaterial(color=_OBSTACLE, shininess=60)
     faint = mg.MeshPhongMaterial(color=_FAR, opacity=0.13, depthWrite=False, shininess=10)
-    rings = int(np.clip(math.sqrt(_TRIANGLES / max(len(scene), 1) / 4), 8, 28))
     for name, chosen, material in (("near", near, solid), ("far", ~near, faint)):
         if chosen.any():
+            share = math.sqrt(_TRIANGLES / np.count_nonzero(chosen) / 3.0)
+            rings = int(np.clip(share, 6, 28))
             spheres = _instances(scene.centers[chosen], scene.radii[chosen], rings, material)
             viewer[name].set_object(spheres)
 

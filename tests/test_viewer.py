@@ -110,3 +110,35 @@ def test_a_scene_without_obstacles_can_be_drawn_too(point, tmp_path):
     plan = fp.plan(fp.Problem(point, fp.Scene(), start, goal, lattice=lattice))
     assert "no obstacle" in page(plan)
     figures.write_figures(plan, tmp_path)
+
+
+def test_thousands_of_spheres_are_drawn_in_two_goes_with_few_triangles():
+    """Near ones solid, the others faint; each sphere once, where it is."""
+    import base64
+    import json
+
+    import umsgpack
+
+    import ffsr_plan as fp
+
+    plan = fp.plan(fp.load_scenario("debris"), fp.LatticeOptimum(), refine=False)
+    scene, near = plan.problem.scene, plan.obstacles_near(0.8)
+    text = re.search(r'"commands": (\[.*?\])', page(plan), flags=re.S)[1]
+    commands = [umsgpack.unpackb(base64.b64decode(c)) for c in json.loads(text)]
+    drawn = {
+        c["path"]: c["object"]
+        for c in commands
+        if c["type"] == "set_object" and c["object"]["object"]["type"] == "InstancedMesh"
+    }
+    assert sorted(drawn) == ["/meshcat/obstacles/far", "/meshcat/obstacles/near"]
+    triangles = 0
+    for path, chosen in (("far", ~near), ("near", near)):
+        entry = drawn[f"/meshcat/obstacles/{path}"]
+        count = entry["object"]["count"]
+        placed = np.reshape(entry["object"]["instanceMatrix"]["array"], (count, 4, 4))
+        assert np.allclose(placed[:, 3, :3], scene.centers[chosen], atol=1e-6)
+        assert np.allclose(placed[:, 0, 0], scene.radii[chosen], atol=1e-6)
+        (ball,) = entry["geometries"]
+        triangles += 2 * count * ball["widthSegments"] * ball["heightSegments"]
+    assert 0 < np.count_nonzero(near) < 500
+    assert triangles < 300_000
