@@ -68,6 +68,11 @@ def matrix(q: Array) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
+def rotate(q: Array, vectors: Array) -> Array:
+    """Vectors (..., 3) turned by rotations (..., 4)."""
+    return np.asarray((matrix(q) @ vectors[..., None])[..., 0])
+
+
 def angle_between(p: Array, q: Array) -> Array:
     """Angle [rad] of the rotation that leads from p to q, in [0, pi]."""
     return np.asarray(np.linalg.norm(log(multiply(inverse(p), q)), axis=-1))

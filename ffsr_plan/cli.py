@@ -295,6 +295,8 @@ def _report_rows(report: Report) -> Iterator[tuple[str, str]]:
     yield "  least link-to-link", f"{report.least_self_separation:.6f} m"
     if report.momentum_residual is not None:
         yield "  momentum residual", f"{report.momentum_residual:.1e} relative"
+    if report.center_drift is not None:
+        yield "  centre of mass", f"stays put within {report.center_drift:.1e} m"
 
 
 @contextmanager

@@ -56,9 +56,11 @@ def certify_edge(
         robot: the robot.
         scene: the obstacles.
         begin: (nq,) configuration to start from.
-        end: (nq,) configuration to go to. In the mode `free-flying` its attitude is not looked at:
-            the attitude follows from the arms' motion.
-        mode: `free-flying` or `attitude-held` (the base turns steadily to the attitude of `end`).
+        end: (nq,) configuration to go to. In the mode `free-flying` its attitude is not looked at,
+            in the mode `free-floating` nor is its base position: they follow from the arms' motion.
+        mode: `free-flying` (thrusters move the base origin from `begin` to `end`), `attitude-held`
+            (they do, and wheels turn the base steadily to the attitude of `end`) or `free-floating`
+            (neither: the centre of mass stays put).
         tolerance: clearance [m] below which the motion may be refused, at least 1e-7.
 
     Raises:

@@ -72,7 +72,7 @@ class EdgeTravel:
             lengths = np.full(m, end - begin)
             if motion.reacts:
                 error = _ERRORS * motion.reaction.error
-                travels = self._bound.reacting(joints, rates, quats, lengths, error)
+                travels = self._bound.reacting(joints, rates, quats, lengths, error, motion.floats)
             else:
                 turn = np.tile(motion.turn, (m, 1))
                 travels = self._bound.held(joints, rates, quats, lengths, turn)

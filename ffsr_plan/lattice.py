@@ -77,7 +77,7 @@ class LayeredLattice:
             self.offsets = frozen(np.zeros((1, 3)))
         progress = np.arange(lattice.divisions + 1) / lattice.divisions
         along = problem.start[:3] + progress[:, None] * problem.travel
-        along[-1] = problem.goal[:3]
+        along[-1] = problem.start[:3] + problem.travel
         self.nominal = Motion(problem.robot, problem.mode, problem.start, problem.goal, along)
 
     @property

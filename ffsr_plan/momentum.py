@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from ffsr_plan.attitude import IDENTITY, angle_rate_matrix, to_angles
 from ffsr_plan.errors import unknown_name
 from ffsr_plan.inputs import Array
+from ffsr_plan.kinematics import turned
 from ffsr_plan.robot import SpaceRobot
 
 
@@ -42,6 +43,21 @@ def connections(robot: SpaceRobot, joint_values: Array) -> Array:
         pin.computeCentroidalMap(robot.model, data, configurations[k])
         angular[k] = data.Ag[3:, 3:]  # the base's linear columns carry no angular momentum
     return -np.linalg.solve(angular[:, :, :3], angular[:, :, 3:])
+
+
+def centers_of_mass(robot: SpaceRobot, joint_values: Array) -> Array:
+    """(N, 3) centre of mass of the whole robot in base axes, from the base origin [m]; unchecked.
+
+    Args:
+        robot: the robot.
+        joint_values: (N, nd) [rad or m].
+    """
+    bodies = list(robot.model.inertias)[1:]
+    masses = np.array([body.mass for body in bodies])
+    levers = np.array([body.lever for body in bodies])
+    poses = robot.tree.poses(joint_values)
+    centers = poses.origins + turned(poses.rotations, levers)
+    return np.asarray(np.einsum("b,kbi->ki", masses / masses.sum(), centers))
 
 
 def attitude_rate_map(robot: SpaceRobot, q: ArrayLike) -> Array:

@@ -1,7 +1,10 @@
 """`Motion`: the continuous whole-body motion through a sequence of corners.
 
-Between corners the base origin and the joints move linearly; the attitude follows the mode: it
-reacts to the arms (free-flying) or turns steadily from start to goal (attitude-held).
+Between corners the joints move linearly. What the base does follows from the mode:
+
+free-flying    thrusters move its origin linearly, its attitude reacts to the arms
+attitude-held  thrusters move its origin linearly, wheels turn it steadily from start to goal
+free-floating  nothing actuates it: attitude and position react, the centre of mass stays put
 """
 
 from __future__ import annotations
@@ -13,10 +16,11 @@ import numpy as np
 
 from ffsr_plan import attitude
 from ffsr_plan.inputs import Array, IntArray, frozen
+from ffsr_plan.momentum import centers_of_mass
 from ffsr_plan.reaction import Reaction
 from ffsr_plan.robot import SpaceRobot
 
-MODES = ("free-flying", "attitude-held")
+MODES = ("free-flying", "attitude-held", "free-floating")
 
 
 class Motion:
@@ -36,15 +40,20 @@ class Motion:
         """The motion from `start` to `goal` (nq,) through base positions (m + 1, 3).
 
         The joints move steadily from start to goal, continuous ones the shorter way round. The
-        goal's attitude counts in the mode `attitude-held` only.
+        goal's attitude counts in the mode `attitude-held` only; where the robot floats, the
+        positions count for their number alone.
         """
         self.robot, self.mode = robot, mode
         self._start, self._goal = start[3:7], goal[3:7]
+        self._origin = start[:3]
         self._progress = np.arange(len(positions)) / (len(positions) - 1)
         travel = robot.joint_change(start, goal)
-        self.positions = frozen(np.array(positions, dtype=np.float64))
         self.joint_values = frozen(robot.joint_values(start) + self._progress[:, None] * travel)
         self.attitudes = frozen(self._attitudes(self._progress))
+        given = np.array(positions, dtype=np.float64)
+        self.positions = frozen(
+            self._afloat(self.attitudes, self.joint_values) if self.floats else given
+        )
 
     @property
     def edges(self) -> int:
@@ -54,7 +63,17 @@ class Motion:
     @property
     def reacts(self) -> bool:
         """Whether the attitude follows from the arms' motion."""
-        return self.mode == "free-flying"
+        return self.mode != "attitude-held"
+
+    @property
+    def floats(self) -> bool:
+        """Whether the base's position follows from the arms' motion too."""
+        return self.mode == "free-floating"
+
+    def base_steps(self) -> Array:
+        """(m, 3) what thrusters move the base origin by over each edge, world axes [m]."""
+        steps: Array = np.diff(self.positions, axis=0)
+        return np.zeros_like(steps) if self.floats else steps
 
     @cached_property
     def reaction(self) -> Reaction:
@@ -80,10 +99,20 @@ class Motion:
     def at(self, edge: IntArray, time: Array) -> Array:
         """(N, nq) configurations on `edge` (N,) at `time` (N,) in [0, 1]."""
         t = time[:, None]
-        position = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
         joints = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
         quat = self._attitudes((edge + time) / self.edges)
+        if self.floats:
+            position = self._afloat(quat, joints)
+        else:
+            position = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
         return self.robot.assemble(position, quat, joints)
+
+    def _afloat(self, quats: Array, joint_values: Array) -> Array:
+        """(N, 3) base origin at attitudes (N, 4) and joints (N, nd), the centre of mass at rest."""
+        begin = np.vstack([self.joint_values[:1], joint_values])
+        centers = centers_of_mass(self.robot, begin)
+        turned = attitude.rotate(np.vstack([self._start, quats]), centers)
+        return np.asarray(self._origin + turned[0] - turned[1:])
 
     def _attitudes(self, progress: Array) -> Array:
         """(N, 4) at path parameters (N,): nodes differ in translation only, which turns nothing."""

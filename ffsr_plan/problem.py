@@ -27,10 +27,12 @@ class Problem:
         scene: the obstacles.
         start: (nq,) start configuration.
         goal: (nq,) goal configuration. In the mode `free-flying` its attitude is not demanded: the
-            attitude follows from the arms' motion.
+            attitude follows from the arms' motion. In the mode `free-floating` its position is not
+            demanded either.
         mode: `free-flying` (thrusters translate the base along the lattice, acting through the
-            centre of mass; the attitude reacts to the arms) or `attitude-held` (wheels hold the
-            attitude interpolated from start to goal).
+            centre of mass; the attitude reacts to the arms), `attitude-held` (wheels hold the
+            attitude interpolated from start to goal) or `free-floating` (nothing actuates the
+            base: attitude and position react, the centre of mass stays put).
         lattice: layers and offsets.
         delta: weight of nearness to obstacles in Eq. 8, in units of length squared, >= 0.
         length_unit: metres per unit of length in F. The paper gives no unit, and F is not
@@ -104,7 +106,9 @@ class Problem:
 
     @property
     def travel(self) -> Array:
-        """(3,) from the base's start to its goal, world axes [m]."""
+        """(3,) from the base's start to its goal, world axes [m]; zero where it floats."""
+        if self.mode == "free-floating":
+            return frozen(np.zeros(3))
         return frozen(self.goal[:3] - self.start[:3])
 
     @property
@@ -115,7 +119,7 @@ class Problem:
     @property
     def turn(self) -> float:
         """Angle from the start's to the goal's attitude [rad], where the mode prescribes both."""
-        if self.mode == "free-flying":
+        if self.mode != "attitude-held":
             return 0.0
         return float(angle_between(self.start[3:7], self.goal[3:7]))
 
@@ -136,9 +140,11 @@ class Problem:
             raise InvalidInput(
                 "goal", self.goal.tolist(), "a configuration that differs from the start"
             )
+        floats = self.mode == "free-floating"
         if not moves and self.lattice.axes:
             raise InvalidInput(
                 "lattice",
-                f"{' and '.join(self.lattice.axes)} axis, start and goal at one position",
+                f"{' and '.join(self.lattice.axes)} axis, "
+                + ("no thrusters" if floats else "start and goal at one position"),
                 "no lateral or normal axis where there is no direction of travel",
             )

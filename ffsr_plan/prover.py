@@ -38,7 +38,7 @@ class Prover:
     def __init__(self, nominal: Motion, scene: Scene, tolerance: float) -> None:
         self._motion, self._tolerance = nominal, tolerance
         self._obstacles, self._self = ObstacleQuery(nominal.robot, scene), SelfQuery(nominal.robot)
-        self._travel = EdgeTravel(nominal)
+        self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
         self._placed: dict[float, Placements] = {}
         self._corners = shape_placements(nominal.robot, nominal.configurations())
         self.speeds = self._travel.speeds
@@ -62,7 +62,7 @@ class Prover:
 
     def base_step(self, layer: int, tail: Array, head: Array) -> Array:
         """(..., 3) what the base origin covers from offsets `tail` to `head` (..., 3) [m]."""
-        along: Array = self._motion.positions[layer + 1] - self._motion.positions[layer]
+        along: Array = self._steps[layer]
         return along + head - tail
 
     def certify(self, layer: int, tail: Array, head: Array, ends: tuple[float, float]) -> Verdict:

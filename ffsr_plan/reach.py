@@ -51,7 +51,7 @@ class Links(NamedTuple):
         bend = self.origins.bend[:, links] + (self.angular_change[:, links] + angular**2) * length
         distance = self.origins.distance[:, links] + length
         speed = self.origins.speed[:, links] + angular * length
-        return position, velocity, _tightened(position, velocity, self.half, distance, speed, bend)
+        return position, velocity, tightened(position, velocity, self.half, distance, speed, bend)
 
 
 class ReachBound:
@@ -88,7 +88,7 @@ class ReachBound:
             angular[:, j] = np.minimum(
                 turning + turns[:, j], angular_now[:, j] + half * angular_change[:, j]
             )
-            distance[:, j], speed[:, j], bend[:, j] = _tightened(
+            distance[:, j], speed[:, j], bend[:, j] = tightened(
                 poses.origins[:, j],
                 velocities.linear[:, j],
                 half,
@@ -102,7 +102,7 @@ class ReachBound:
         return Links(poses, velocities, half, reach, angular, angular_change)
 
 
-def _tightened(
+def tightened(
     position: Array, velocity: Array, half: Array, distance: Array, speed: Array, bend: Array
 ) -> Reach:
     """Of the bounds along the arm and those from the values at the middle, the smaller each."""

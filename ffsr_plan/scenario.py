@@ -64,7 +64,8 @@ class PoseTable(_Table):
 class GoalTable(_Table):
     """The table `[goal]`."""
 
-    position: Triple = [0.0, 0.0, 0.0]
+    position: Triple | None = None
+    """At the world's origin if not given; not to be given in the mode free-floating."""
     attitude: Triple | None = None
     joints: dict[str, Number] = {}
 
@@ -205,18 +206,27 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         meshes=file.robot.meshes,
         cylinders=file.robot.cylinders,
     )
-    if file.goal.attitude is not None and file.robot.mode == "free-flying":
+    mode = one_of("robot.mode", file.robot.mode, MODES)
+    if file.goal.attitude is not None and mode != "attitude-held":
         raise InvalidInput(
             "goal.attitude",
             file.goal.attitude,
-            "no goal attitude in the mode free-flying, where it follows from the arms; "
+            f"no goal attitude in the mode {mode}, where it follows from the arms; "
             "leave it out, or use mode = 'attitude-held'",
+        )
+    if file.goal.position is not None and mode == "free-floating":
+        raise InvalidInput(
+            "goal.position",
+            file.goal.position,
+            "no goal position in the mode free-floating, where it follows from the arms",
         )
     with _in_table("start"):
         start = robot.configuration(**file.start.model_dump())
     with _in_table("goal"):
         goal = robot.configuration(
-            file.goal.position, file.goal.attitude or (0.0, 0.0, 0.0), file.goal.joints
+            file.goal.position or (0.0, 0.0, 0.0),
+            file.goal.attitude or (0.0, 0.0, 0.0),
+            file.goal.joints,
         )
     with _in_table("obstacles"):
         scenes = [Scene([o.center for o in file.obstacles], [o.radius for o in file.obstacles])]
@@ -235,7 +245,7 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         scene,
         start=start,
         goal=goal,
-        mode=file.robot.mode,
+        mode=mode,
         lattice=Lattice(divisions=file.lattice.divisions, **axes),
         **file.objective.model_dump(),
     )

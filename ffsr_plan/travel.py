@@ -28,7 +28,7 @@ from ffsr_plan import attitude
 from ffsr_plan.attitude import cross
 from ffsr_plan.inputs import Array, IntArray
 from ffsr_plan.kinematics import turned
-from ffsr_plan.reach import Links, ReachBound
+from ffsr_plan.reach import Links, Reach, ReachBound, tightened
 from ffsr_plan.robot import SpaceRobot
 
 
@@ -136,8 +136,9 @@ class TravelBound:
         attitudes: Array,
         lengths: Array,
         error: float,
+        floats: bool = False,
     ) -> Travels:
-        """The base turns so that the angular momentum stays zero (free-flying).
+        """The base turns so that the angular momentum stays zero.
 
         Args:
             joint_values: (K, nd) at the middle of each interval [rad or m].
@@ -146,9 +147,11 @@ class TravelBound:
             lengths: (K,) of the intervals, in units of edge time: at most 1.
             error: bound on the angle [rad] by which any attitude may be wrong, these and those at
                 which clearances are measured.
+            floats: whether the centre of mass is at rest (free-floating), so that the base step is
+                zero, and not the base origin on a straight line (free-flying).
         """
         links = self._reach.over(joint_values, joint_rates, lengths)
-        return self._travels(links, self._reaction(links), attitudes, error)
+        return self._travels(links, self._reaction(links), attitudes, error, floats)
 
     def held(
         self,
@@ -199,17 +202,31 @@ class TravelBound:
         )
         return _Turn(rate, most, (momentum_change + inertia_change * most) / least)
 
-    def _travels(self, links: Links, turn: _Turn, attitudes: Array, error: float) -> Travels:
+    def _travels(
+        self,
+        links: Links,
+        turn: _Turn,
+        attitudes: Array,
+        error: float,
+        floats: bool = False,
+    ) -> Travels:
         """All that T needs but the base's translation."""
         position, relative, reach = links.reach(self.links, self.points)
+        length = 2.0 * links.half
+        quarter = 0.25 * length**2
+        still = np.zeros_like(reach.speed)
+        in_base = Travel(
+            relative, reach.speed, quarter * reach.bend, still, length[:, 0], self.first
+        )
+        if floats:
+            position, relative, reach = self._from_center(links, position, relative, reach)
         velocity = relative + cross(turn.rate[:, None], position)
-        most, length = turn.most[:, None], 2.0 * links.half
+        most = turn.most[:, None]
         bend = (
             (turn.change[:, None] + most**2) * reach.distance
             + 2.0 * most * reach.speed
             + reach.bend
         )
-        quarter = 0.25 * length**2
         world = Travel(
             velocity @ np.swapaxes(attitude.matrix(attitudes), -1, -2),
             most * reach.distance + reach.speed,
@@ -218,11 +235,21 @@ class TravelBound:
             length[:, 0],
             self.first,
         )
-        still = np.zeros_like(reach.speed)
-        in_base = Travel(
-            relative, reach.speed, quarter * reach.bend, still, length[:, 0], self.first
-        )
         return Travels(world, in_base)
+
+    def _from_center(
+        self, links: Links, position: Array, velocity: Array, reach: Reach
+    ) -> tuple[Array, Array, Reach]:
+        """The same seen from the centre of mass instead of the base origin, still in base axes."""
+        share = self._masses / np.sum(self._masses)
+        centers, motions, bodies = links.reach(self._bodies, self._levers)
+        position = position - np.einsum("b,kbi->ki", share, centers)[:, None]
+        velocity = velocity - np.einsum("b,kbi->ki", share, motions)[:, None]
+        distance, speed, bend = (
+            own + np.sum(share * other, axis=1, keepdims=True)
+            for own, other in zip(reach, bodies, strict=True)
+        )
+        return position, velocity, tightened(position, velocity, links.half, distance, speed, bend)
 
 
 def _locked(

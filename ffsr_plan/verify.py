@@ -46,6 +46,9 @@ class Report:
     momentum_residual: float | None
     """Largest |angular momentum about the centre of mass| relative to the sum of the bodies' own
     shares, over all stations; None where wheels hold the attitude and may store momentum."""
+    center_drift: float | None
+    """Farthest that the centre of mass is from where it was at the start [m], over all samples;
+    None where thrusters move it."""
     clearance_error: float
     """Largest difference between the plan's node clearances and the ones found here [m]."""
     objective_error: float
@@ -71,13 +74,14 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
         problems.append(f"a shape of link '{link}' sticks out of the solid that stands for it")
     pairs = bodies.pairs()
     divisions = plan.problem.lattice.divisions
-    clearances, separations, largest, checked = [], [], 0.0, 0
+    clearances, separations, centers, largest, checked = [], [], [], 0.0, 0
     for edge in range(divisions):
         q = plan.at(np.minimum((edge + np.linspace(0.0, 1.0, samples + 1)) / divisions, 1.0))
         poses = _poses(plan, bodies, q)
         placed = [poses[s.link] @ s.placement for s in bodies.shapes]
         clearances.append(_least_clearance(plan, bodies.shapes, placed))
         separations.append(_least_separation(pairs, dict(zip(bodies.shapes, placed, strict=True))))
+        centers.append(_center_of_mass(bodies, poses))
         ways = [np.linalg.norm(np.diff(p[:, :3, 3], axis=0), axis=1).max() for p in placed]
         largest = max([largest, *map(float, ways)])
         checked += len(q)
@@ -91,14 +95,20 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
     if plan.certificate.least_clearance > least + AGREEMENT:
         proven = plan.certificate.least_clearance
         problems.append(f"{proven:.6g} m are said to be proven, but {least:.6g} m were met")
-    residual = _momentum_residual(plan, bodies) if plan.problem.mode == "free-flying" else None
+    held, floats = (plan.problem.mode == m for m in ("attitude-held", "free-floating"))
+    residual = None if held else _momentum_residual(plan, bodies)
     if residual is not None and residual > MOMENTUM_LIMIT:
         problems.append(f"angular momentum is not conserved: residual {residual:.3g}")
+    drift = None
+    if floats:
+        drift = max(float(np.linalg.norm(c - centers[0][0], axis=1).max()) for c in centers)
+        if drift > AGREEMENT:
+            problems.append(f"the centre of mass moves by {drift:.3g} m without thrusters")
     problems += _ends_and_limits(plan)
     clearance_error, objective_error = _recomputed(plan, bodies, problems)
     return Report(
-        not problems, tuple(problems), least, apart, residual, clearance_error, objective_error,
-        checked, largest,
+        not problems, tuple(problems), least, apart, residual, drift, clearance_error,
+        objective_error, checked, largest,
     )  # fmt: skip
 
 
@@ -107,6 +117,15 @@ def _poses(plan: Plan, bodies: Bodies, q: Array) -> dict[str, Array]:
     values = robot.joint_values(q)
     joints = {name: values[:, k] for k, name in enumerate(robot.joint_names)}
     return bodies.link_poses(pose(q[:, :3], q[:, 3:7]), joints)
+
+
+def _center_of_mass(bodies: Bodies, poses: dict[str, Array]) -> Array:
+    """(N, 3) of the whole robot in the world [m]."""
+    mass, moment = 0.0, np.zeros(3)
+    for link, inertial in bodies.inertials.items():
+        frame = poses[link] @ (np.eye(4) if inertial.origin is None else inertial.origin)
+        mass, moment = mass + inertial.mass, moment + inertial.mass * frame[:, :3, 3]
+    return np.asarray(moment / mass)
 
 
 def _least_clearance(plan: Plan, shapes: list[Shape], placed: list[Array]) -> float:
@@ -205,8 +224,10 @@ def _ends_and_limits(plan: Plan) -> list[str]:
     problems = []
     if np.abs(first - problem.start).max() > AGREEMENT:
         problems.append("the motion does not begin at the start")
-    reached = np.append(last[:3] - problem.goal[:3], last[7:] - problem.goal[7:])
-    if np.abs(reached).max() > AGREEMENT:
+    reached = last[7:] - problem.goal[7:]
+    if problem.mode != "free-floating":
+        reached = np.append(reached, last[:3] - problem.goal[:3])
+    if np.max(np.abs(reached), initial=0.0) > AGREEMENT:
         problems.append("the motion does not end at the goal")
     if problem.mode == "attitude-held":
         overlap = abs(float(last[3:7] @ problem.goal[3:7]))
@@ -238,12 +259,13 @@ def _recomputed(plan: Plan, bodies: Bodies, problems: list[str]) -> tuple[float,
     turns = np.diff(joints, axis=0)
     turns = np.where(np.isinf(problem.robot.upper), (turns + np.pi) % (2 * np.pi) - np.pi, turns)
     weights = np.where(problem.robot.prismatic, problem.position_weight, problem.rotation_weight)
-    along = (problem.goal[:3] - problem.start[:3]) / m
+    floats = problem.mode == "free-floating"  # what the base does there counts for nothing
+    along = np.zeros(3) if floats else (problem.goal[:3] - problem.start[:3]) / m
     nominal = np.sum((along * problem.position_weight) ** 2) + np.sum((turns[0] * weights) ** 2)
     if problem.mode == "attitude-held":
         overlap = min(1.0, abs(float(problem.start[3:7] @ problem.goal[3:7])))
         nominal += (2.0 * np.arccos(overlap) / m * problem.rotation_weight) ** 2
-    across = (np.diff(q[:, :3], axis=0) - along) * problem.position_weight
+    across = (np.diff(q[:, :3], axis=0) - along) * (0.0 if floats else problem.position_weight)
     length = float(np.sum(np.sqrt(nominal + np.sum(across**2, axis=1))))
     capped = nodes if problem.clearance_cap is None else np.minimum(nodes, problem.clearance_cap)
     objective = length / unit + problem.delta * float(np.sum(unit / capped[1:-1]))
