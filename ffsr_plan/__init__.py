@@ -12,17 +12,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ffsr_plan import momentum
-from ffsr_plan.axes import Axis, Lattice
+from ffsr_plan.axes import Axis, Lattice, PostureAxis
 from ffsr_plan.collision import Clearance, clearance
 from ffsr_plan.colony import AntSystem, MaxMinAntSystem
 from ffsr_plan.edge_proof import EdgeProof, certify_edge
 from ffsr_plan.errors import (
+    AttitudeOutOfReach,
     FfsrPlanError,
     GoalInCollision,
     InvalidInput,
     NoPath,
     PlanningError,
     StartInCollision,
+    UnprovenPath,
 )
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.optimum import LatticeOptimum
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 __all__ = [
     "AntSystem",
+    "AttitudeOutOfReach",
     "Axis",
     "Clearance",
     "EdgeProof",
@@ -53,12 +56,14 @@ __all__ = [
     "NoPath",
     "Plan",
     "PlanningError",
+    "PostureAxis",
     "Problem",
     "Roadmap",
     "Scenario",
     "Scene",
     "SpaceRobot",
     "StartInCollision",
+    "UnprovenPath",
     "certify_edge",
     "clearance",
     "load_robot",

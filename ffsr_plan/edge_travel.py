@@ -71,7 +71,7 @@ class EdgeTravel:
             joints = motion.joint_values[:-1] + time * rates
             lengths = np.full(m, end - begin)
             if motion.reacts:
-                error = _ERRORS * motion.reaction.error
+                error = _ERRORS * motion.reaction.error * len(motion.reaction.increments)
                 travels = self._bound.reacting(joints, rates, quats, lengths, error, motion.floats)
             else:
                 turn = np.tile(motion.turn, (m, 1))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 from collections.abc import Iterable
 
 
@@ -95,6 +96,56 @@ class NoPath(PlanningError):  # noqa: N818 - the name is part of the public cont
 
     def __reduce__(self) -> tuple[type, tuple[int, tuple[int | str, ...], int]]:
         return type(self), (self.layer, self.obstacles, self.divisions)
+
+
+class AttitudeOutOfReach(PlanningError):  # noqa: N818 - so are the names of its kinds
+    """The arms were not found to turn the base to the attitude that the goal demands.
+
+    Attributes:
+        wanted: angle from the start's to the goal's attitude [rad].
+        missed: angle from the attitude reached to the goal's [rad].
+    """
+
+    def __init__(self, wanted: float, missed: float) -> None:
+        self.wanted = wanted
+        self.missed = missed
+        super().__init__(
+            f"goal attitude out of reach: of {math.degrees(wanted):.1f} degrees the arms leave "
+            f"{math.degrees(missed):.1f} degrees; more divisions, wider or other posture axes may "
+            "turn the base farther"
+        )
+
+    def __reduce__(self) -> tuple[type, tuple[float, float]]:
+        return type(self), (self.wanted, self.missed)
+
+
+class UnprovenPath(PlanningError):  # noqa: N818
+    """What the colony found could not be proven free; that there is no path is not said.
+
+    Attributes:
+        layer: the first layer that could not be reached.
+        link: name of the link that comes too near.
+        obstacle: index of the sphere, or the name of the other link.
+        distance: least distance met [m], negative in penetration.
+    """
+
+    def __init__(
+        self, layer: int, link: str, obstacle: int | str, distance: float, divisions: int
+    ) -> None:
+        self.layer = layer
+        self.link = link
+        self.obstacle = obstacle
+        self.distance = distance
+        self.divisions = divisions
+        other = f"obstacle {obstacle}" if isinstance(obstacle, int) else f"link '{obstacle}'"
+        super().__init__(
+            f"no path was found that could be proven free: on the way to layer {layer} of "
+            f"{divisions} link '{link}' comes to {distance:.4g} m from {other}; a finer spacing, "
+            "more divisions, more cycles or other posture axes may help"
+        )
+
+    def __reduce__(self) -> tuple[type, tuple[int, str, int | str, float, int]]:
+        return type(self), (self.layer, self.link, self.obstacle, self.distance, self.divisions)
 
 
 def unknown_name(what: str, value: object, names: Iterable[str]) -> InvalidInput:

@@ -35,25 +35,41 @@ class Motion:
     """
 
     def __init__(
-        self, robot: SpaceRobot, mode: str, start: Array, goal: Array, positions: Array
+        self,
+        robot: SpaceRobot,
+        mode: str,
+        start: Array,
+        goal: Array,
+        positions: Array,
+        joint_values: Array | None = None,
     ) -> None:
         """The motion from `start` to `goal` (nq,) through base positions (m + 1, 3).
 
-        The joints move steadily from start to goal, continuous ones the shorter way round. The
-        goal's attitude counts in the mode `attitude-held` only; where the robot floats, the
+        The goal's attitude counts in the mode `attitude-held` only; where the robot floats, the
         positions count for their number alone.
+
+        Args:
+            robot: the robot.
+            mode: one of `MODES`.
+            start: (nq,).
+            goal: (nq,).
+            positions: (m + 1, 3) base origin at the corners, world [m].
+            joint_values: (m + 1, nd) at the corners; without them the joints move steadily from
+                start to goal, continuous ones the shorter way round.
         """
         self.robot, self.mode = robot, mode
         self._start, self._goal = start[3:7], goal[3:7]
         self._origin = start[:3]
         self._progress = np.arange(len(positions)) / (len(positions) - 1)
-        travel = robot.joint_change(start, goal)
-        self.joint_values = frozen(robot.joint_values(start) + self._progress[:, None] * travel)
+        self._straight = joint_values is None
+        if joint_values is None:
+            travel = robot.joint_change(start, goal)
+            joint_values = robot.joint_values(start) + self._progress[:, None] * travel
+        self.joint_values = frozen(np.array(joint_values, dtype=np.float64))
+        self.positions = frozen(np.array(positions, dtype=np.float64))
         self.attitudes = frozen(self._attitudes(self._progress))
-        given = np.array(positions, dtype=np.float64)
-        self.positions = frozen(
-            self._afloat(self.attitudes, self.joint_values) if self.floats else given
-        )
+        if self.floats:
+            self.positions = frozen(self._afloat(self.attitudes, self.joint_values))
 
     @property
     def edges(self) -> int:
@@ -77,8 +93,15 @@ class Motion:
 
     @cached_property
     def reaction(self) -> Reaction:
-        """The base rotation that the joint path, one straight segment, brings about."""
-        return Reaction(self.robot, self.joint_values[[0, -1]])
+        """The base rotation that the joint path brings about; as one segment if it is straight."""
+        return Reaction(
+            self.robot, self.joint_values[[0, -1]] if self._straight else self.joint_values
+        )
+
+    @cached_property
+    def _turned(self) -> Array:
+        """(m + 1, 4) attitudes at the corners of a joint path that is not straight."""
+        return self.reaction.attitudes(self._start)
 
     @property
     def turn(self) -> Array:
@@ -115,8 +138,12 @@ class Motion:
         return np.asarray(self._origin + turned[0] - turned[1:])
 
     def _attitudes(self, progress: Array) -> Array:
-        """(N, 4) at path parameters (N,): nodes differ in translation only, which turns nothing."""
+        """(N, 4) at path parameters (N,) from 0 to 1; translation turns nothing."""
         if not self.reacts:
             return attitude.slerp(self._start, self._goal, progress)
-        turned = self.reaction.rotation(np.zeros(len(progress), dtype=np.int64), progress)
-        return attitude.multiply(self._start, turned)
+        if self._straight:
+            turned = self.reaction.rotation(np.zeros(len(progress), dtype=np.int64), progress)
+            return attitude.multiply(self._start, turned)
+        scaled = progress * self.edges
+        edge = np.minimum(scaled.astype(np.int64), self.edges - 1)
+        return attitude.multiply(self._turned[edge], self.reaction.rotation(edge, scaled - edge))

@@ -8,15 +8,20 @@ from ffsr_plan.inputs import Array
 from ffsr_plan.problem import Problem
 
 
-def path_length(problem: Problem, offsets: Array) -> float:
+def path_length(problem: Problem, offsets: Array, displaced: Array | None = None) -> float:
     """L of Eq. 6 [m]: sum of sqrt(delta_d^2 + |offset change|^2) over the edges.
 
     Args:
-        problem: gives delta_d and the weight of a metre.
+        problem: gives delta_d and the weights of a metre and a radian.
         offsets: (m + 1, 3) displacement from the nominal base position on each layer [m].
+        displaced: (m + 1, nd) displacement from the nominal joint values, if any [rad or m].
     """
-    across = np.linalg.norm(np.diff(offsets, axis=0), axis=1) * problem.position_weight
-    return float(np.sum(np.sqrt(problem.delta_d**2 + across**2)))
+    across = np.sum((np.diff(offsets, axis=0) * problem.position_weight) ** 2, axis=1)
+    if displaced is not None:
+        slides = problem.robot.prismatic
+        weights = np.where(slides, problem.position_weight, problem.rotation_weight)
+        across = across + np.sum((np.diff(displaced, axis=0) * weights) ** 2, axis=1)
+    return float(np.sum(np.sqrt(problem.delta_d**2 + across)))
 
 
 def nearness(problem: Problem, clearances: Array) -> Array:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ffsr_plan.axes import Axis, Lattice
+from ffsr_plan.axes import Axis, Lattice, PostureAxis
 from ffsr_plan.colony import History, Trails
 from ffsr_plan.errors import FfsrPlanError, InvalidInput
 from ffsr_plan.inputs import finite_array, frozen, number
@@ -26,7 +26,7 @@ from ffsr_plan.shapes import Containers
 FORMAT = "ffsr-plan/2"
 _PLAIN = (
     "mode", "delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight",
-    "tolerance",
+    "tolerance", "reach_attitude",
 )  # fmt: skip
 
 
@@ -107,7 +107,12 @@ def from_dict(data: dict[str, Any]) -> Plan:
         Scene(given["scene"]["centers"], given["scene"]["radii"]),
         start=given["start"],
         goal=given["goal"],
-        lattice=Lattice(divisions=lattice["divisions"], **axes),
+        lattice=Lattice(
+            divisions=lattice["divisions"],
+            lateral=axes.get("lateral"),
+            normal=axes.get("normal"),
+            postures=[_posture_axis(entry) for entry in lattice["postures"]],
+        ),
         **{name: given[name] for name in _PLAIN},
     )
     certificate = dict(data["certificate"])
@@ -129,6 +134,12 @@ def from_dict(data: dict[str, Any]) -> Plan:
         interrupted=data["interrupted"],
         seconds=data["seconds"],
     )
+
+
+def _posture_axis(entry: dict[str, Any]) -> PostureAxis:
+    if entry["posture"]:
+        return PostureAxis.towards(entry["posture"], entry["levels"])
+    return PostureAxis(dict(entry["joints"]), entry["half_count"], entry["spacing"])
 
 
 def write(plan: Plan, path: Path) -> None:
@@ -185,7 +196,7 @@ def read(path: Path) -> Plan:
 def _check_shapes(plan: Plan) -> None:
     """Raise `InvalidInput` where the arrays of a plan do not fit its problem."""
     corners, nq = plan.problem.lattice.divisions + 1, plan.problem.robot.model.nq
-    axes = len(plan.problem.lattice.axes)
+    axes = len(plan.problem.lattice.axes) + len(plan.problem.lattice.postures)
     shapes = {
         "configurations": (plan.configurations.shape, (corners, nq)),
         "clearances": (plan.clearances.shape, (corners,)),

@@ -14,6 +14,7 @@ from ffsr_plan.colony.records import OnCycle
 from ffsr_plan.errors import FfsrPlanError, InvalidInput
 from ffsr_plan.inputs import frozen, number, truth, whole_number
 from ffsr_plan.optimum import LatticeOptimum, lattice_optimum
+from ffsr_plan.posture_planner import plan_postures
 from ffsr_plan.problem import Problem
 from ffsr_plan.refinement import refined
 from ffsr_plan.result import Plan
@@ -74,6 +75,14 @@ def plan(
     if on_cycle is not None and colonies > 1:
         raise InvalidInput("on_cycle", on_cycle, "a callback only where colonies = 1")
     rng, seed_number = _generator(seed)
+    if problem.lattice.postures:
+        watch = Watch(on_cycle, time.monotonic() + seconds)
+        plans = [
+            plan_postures(problem, planner, own, seed_number, watch)
+            for own in (rng.spawn(colonies) if colonies > 1 else [rng])
+        ]
+        best = min(plans, key=lambda found: found.objective)
+        return replace(best, seconds=time.perf_counter() - begin)
     roadmap = Roadmap(problem)
     if colonies == 1:
         watch = Watch(on_cycle, time.monotonic() + seconds)

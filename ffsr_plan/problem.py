@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ffsr_plan.attitude import angle_between
 from ffsr_plan.axes import Lattice
 from ffsr_plan.errors import InvalidInput
-from ffsr_plan.inputs import Array, frozen, number, one_of
+from ffsr_plan.inputs import Array, frozen, number, one_of, truth
 from ffsr_plan.motion import MODES
 from ffsr_plan.robot import SpaceRobot
 from ffsr_plan.scene import Scene
@@ -41,6 +41,8 @@ class Problem:
         position_weight: metres of length per metre of translation (Eq. 4).
         rotation_weight: metres of length per radian of joint or held-base rotation (Eq. 4).
         tolerance: clearance [m] below which an edge may count as blocked.
+        reach_attitude: whether the arms are to bring the base to the goal's attitude; in the modes
+            whose attitude reacts, on a lattice with posture axes.
     """
 
     robot: SpaceRobot
@@ -55,6 +57,7 @@ class Problem:
     position_weight: float = 1.0
     rotation_weight: float = 1.0
     tolerance: float = 1e-4
+    reach_attitude: bool = False
 
     def __init__(  # the annotations differ from the fields': anything array-like may come in
         self,
@@ -70,6 +73,7 @@ class Problem:
         position_weight: float = 1.0,
         rotation_weight: float = 1.0,
         tolerance: float = 1e-4,
+        reach_attitude: bool = False,
     ) -> None:
         """Check and freeze the problem.
 
@@ -99,6 +103,7 @@ class Problem:
             "position_weight": number("position_weight", position_weight, above=0.0),
             "rotation_weight": number("rotation_weight", rotation_weight, at_least=0.0),
             "tolerance": number("tolerance", tolerance, at_least=1e-7),
+            "reach_attitude": truth("reach_attitude", reach_attitude),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -136,7 +141,11 @@ class Problem:
     def _check_that_something_is_to_be_done(self) -> None:
         moves = float(np.linalg.norm(self.travel)) > _SAME
         turns = float(np.max(np.abs(self.joint_travel), initial=0.0)) > _SAME or self.turn > _SAME
-        if not (moves or turns):
+        if self.reach_attitude and self.mode == "attitude-held":
+            raise InvalidInput("reach_attitude", True, "False where wheels turn the base")
+        if self.reach_attitude and not self.lattice.postures:
+            raise InvalidInput("reach_attitude", True, "a lattice with posture axes")
+        if not (moves or turns or self.reach_attitude):
             raise InvalidInput(
                 "goal", self.goal.tolist(), "a configuration that differs from the start"
             )

@@ -46,11 +46,21 @@ class Reaction:
             robot: the robot.
             joint_values: (m + 1, nd) the corners of the joint path.
         """
-        steps = np.diff(joint_values, axis=0)
+        steps: Array = np.diff(joint_values, axis=0)
+        self._integrate(robot, joint_values[:-1], steps)
+
+    @classmethod
+    def of_segments(cls, robot: SpaceRobot, begin: Array, steps: Array) -> Reaction:
+        """The same for segments (m, nd) that do not follow one another, from `begin` by `steps`."""
+        reaction = cls.__new__(cls)
+        reaction._integrate(robot, begin, steps)
+        return reaction
+
+    def _integrate(self, robot: SpaceRobot, begin: Array, steps: Array) -> None:
         largest = float(np.max(np.abs(steps), initial=0.0))
         substeps = max(1, int(np.ceil(largest / 0.2)))
         while True:
-            self._expand(robot, joint_values[:-1], steps, substeps)
+            self._expand(robot, begin, steps, substeps)
             if self._converged():
                 break
             substeps *= 2

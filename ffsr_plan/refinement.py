@@ -35,10 +35,12 @@ def refine(plan: Plan) -> Plan:
     Offsets stay within the lattice's window, in steps of a sixteenth of its spacing.
 
     Args:
-        plan: any plan on a lattice of lateral and normal axes.
+        plan: any plan; on a lattice with posture axes it is returned as it is.
     """
     if not isinstance(plan, Plan):
         raise InvalidInput("plan", plan, "a Plan")
+    if plan.problem.lattice.postures:
+        return plan
     lattice = LayeredLattice(plan.problem)
     prover = Prover(lattice.nominal, plan.problem.scene, plan.problem.tolerance)
     better = refined(plan, lattice, prover)
@@ -49,8 +51,8 @@ def refine(plan: Plan) -> Plan:
 
 def refined(plan: Plan, lattice: LayeredLattice, prover: Prover) -> Plan:
     """`refine` with a lattice and a prover that are there already; the proven clearance is left."""
-    if not lattice.problem.lattice.axes:
-        return plan  # one node a layer: nothing to move
+    if not lattice.problem.lattice.axes or lattice.problem.lattice.postures:
+        return plan  # one node a layer: nothing to move; or moving one changes all attitudes behind
     descent = _Descent(plan, lattice, prover)
     descent.run()
     if not descent.objective < plan.objective:

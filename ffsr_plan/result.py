@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.attitude import to_angles
+from ffsr_plan.attitude import angle_between, to_angles
 from ffsr_plan.colony import History, Planner, Trails
 from ffsr_plan.errors import InvalidInput
 from ffsr_plan.inputs import Array, Flags, IntArray, finite_array
@@ -33,12 +33,12 @@ class Plan:
         planner: the planner's settings.
         seed: the seed, or None if a generator was handed over.
         nodes: offset indices along the path, 0 = no offset: (m + 1,), or (m + 1, axes) where the
-            lattice has several axes.
+            lattice has several axes (lateral, normal, postures in this order).
         configurations: (m + 1, nq) base pose in the world [m, quaternion xyzw] and joints [rad, m].
         length: L of Eq. 6 [m].
         objective: F of Eq. 8 [length units].
         lattice_objective: F of the path on the lattice, before refinement.
-        optimum: F of the exact lattice optimum.
+        optimum: F of the exact lattice optimum; with posture axes a lower bound on it.
         clearances: (m + 1,) least link-to-sphere distance at each node [m].
         history: per cycle, best F, best and mean F of the cycle, number of different paths.
         trails: the edges that ants walked, with ants and pheromone.
@@ -67,18 +67,41 @@ class Plan:
     def gap(self) -> float:
         """(lattice_objective - optimum) / optimum: how far the search stayed above the optimum."""
         above = self.lattice_objective - self.optimum
-        return above / self.optimum if above > 0.0 else 0.0
+        if above <= 0.0:
+            return 0.0
+        return above / self.optimum if self.optimum > 0.0 else np.inf
 
     @cached_property
     def motion(self) -> Motion:
         """The continuous motion through `configurations`."""
         problem, along = self.problem, self.configurations[:, :3]
-        return Motion(problem.robot, problem.mode, problem.start, problem.goal, along)
+        joints = None
+        if problem.lattice.postures:
+            values = problem.robot.joint_values(self.configurations)
+            endless = np.isinf(problem.robot.upper)
+            joints = np.where(endless, np.unwrap(values, axis=0), values)
+        return Motion(problem.robot, problem.mode, problem.start, problem.goal, along, joints)
 
     @property
     def arrival_attitude(self) -> Array:
         """(3,) ZYX angles alpha, beta, gamma [rad] of the base at the end of the motion."""
         return to_angles(self.configurations[-1, 3:7])
+
+    @property
+    def arrival_attitude_error(self) -> float | None:
+        """Angle [rad] from the attitude reached to the goal's; None where none is demanded."""
+        if not self.problem.reach_attitude:
+            return None
+        return float(angle_between(self.configurations[-1, 3:7], self.problem.goal[3:7]))
+
+    @property
+    def optimum_is_exact(self) -> bool:
+        """Whether `optimum` is the exact lattice optimum, and not only a lower bound on it.
+
+        With posture axes the cost depends on the way, and `gap` says how far the plan is from a
+        bound that no path of the lattice falls below.
+        """
+        return not self.problem.lattice.postures
 
     def at(self, s: ArrayLike) -> Array:
         """Configuration at path parameter `s` in [0, 1], the reaction of the base included.

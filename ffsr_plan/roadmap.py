@@ -10,7 +10,7 @@ import numpy as np
 
 from ffsr_plan.compiling import call
 from ffsr_plan.edges import Verdict
-from ffsr_plan.errors import NoPath
+from ffsr_plan.errors import InvalidInput, NoPath
 from ffsr_plan.inputs import Array, Flags, IntArray, States, frozen
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.node_clearances import NodeClearances
@@ -52,6 +52,11 @@ class Roadmap:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
             NoPath: if the arms collide with each other on the way, at every node alike.
         """
+        if problem.lattice.postures:
+            raise InvalidInput(
+                "lattice postures", len(problem.lattice.postures),
+                "none: with them a node has no one attitude, and no roadmap can be made",
+            )  # fmt: skip
         self.problem = problem
         self.lattice = LayeredLattice(problem)
         self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)

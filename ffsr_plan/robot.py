@@ -20,7 +20,7 @@ from ffsr_plan.kinematics import Tree
 from ffsr_plan.pinocchio_urdf import build_model, visual_model
 from ffsr_plan.primitives import Primitives, primitives
 from ffsr_plan.shapes import CONTAINERS, Containers, Replacement, collision_geometry
-from ffsr_plan.srdf import disabled_pairs
+from ffsr_plan.srdf import disabled_pairs, named_postures
 from ffsr_plan.urdf_check import Counts, check_urdf, parse
 
 
@@ -108,6 +108,16 @@ class SpaceRobot:
     def primitives(self) -> Primitives:
         """The collision shapes as arrays."""
         return primitives(self.collision_model)
+
+    @cached_property
+    def postures(self) -> Mapping[str, Mapping[str, float]]:
+        """Named postures, from the SRDF's group states: joint values [rad or m] by joint.
+
+        A posture speaks of the joints that it lists; the others stay where they are.
+        """
+        bounds = zip(self.lower.tolist(), self.upper.tolist(), strict=True)
+        limits = dict(zip(self.joint_names, bounds, strict=True))
+        return named_postures(self.srdf, f"{self.name}, SRDF", limits)
 
     def neutral(self) -> Array:
         """(nq,) base at the world's origin, joint values zero."""
@@ -248,7 +258,8 @@ def load_robot(
         package_dirs: folders in which `package://` and relative mesh addresses are looked up,
             before the folder of the `.urdf` file.
         srdf: path to an SRDF whose `<disable_collisions>` exempt pairs of links from the check for
-            self-collision; adjacent links are exempt in any case.
+            self-collision (adjacent links are exempt in any case) and whose `<group_state>`s are
+            the robot's named postures. A bundled robot brings its own.
         meshes: what stands for a mesh: `hull`, its convex hull, or `capsule`, one that contains it.
         cylinders: what stands for a cylinder: `hull`, a prism of 24 sides around it (at most
             0.9 % of the radius larger), or `capsule`, one that contains it (the one with the least
@@ -261,6 +272,8 @@ def load_robot(
     if not isinstance(source, (str, Path)):
         raise InvalidInput("robot", source, "a name or a path")
     path = bundled.find("urdf", str(source), ".urdf")
+    if path is not None and srdf is None:
+        srdf = bundled.find("urdf", str(source), ".srdf")
     if path is None:
         path = Path(source)
         if path.suffix != ".urdf":
@@ -310,10 +323,12 @@ def robot_from_urdf(
             if tuple(ends) in disabled or _adjacent(model, first.parentJoint, second.parentJoint):
                 continue
             collision.addCollisionPair(pin.CollisionPair(b, a))
-    return SpaceRobot(
+    robot = SpaceRobot(
         name, text, model, collision, visual_model(model, text, folders), tuple(folders),
         replacements, containers, corners, srdf, disabled,
     )  # fmt: skip
+    robot.postures  # noqa: B018 - so that a wrong one is found now
+    return robot
 
 
 def _read(what: str, path: Path) -> str:

@@ -13,7 +13,7 @@ import pydantic
 from pydantic import BaseModel, ConfigDict, Field
 
 from ffsr_plan import bundled
-from ffsr_plan.axes import Axis, Lattice
+from ffsr_plan.axes import Axis, Lattice, PostureAxis
 from ffsr_plan.colony import MaxMinAntSystem, Planner
 from ffsr_plan.errors import InvalidInput, unknown_name
 from ffsr_plan.generators import cloud
@@ -96,12 +96,23 @@ class AxisTable(_Table):
     spacing: Number
 
 
+class PostureTable(_Table):
+    """An entry of `postures`: `towards` and `levels`, or `joints`, `half_count` and `spacing`."""
+
+    towards: str | None = None
+    levels: int | None = None
+    joints: dict[str, Number] | None = None
+    half_count: int | None = None
+    spacing: Number | None = None
+
+
 class LatticeTable(_Table):
     """The table `[lattice]`."""
 
     divisions: int = DIVISIONS
     lateral: AxisTable | None = None
     normal: AxisTable | None = None
+    postures: list[PostureTable] = []
 
 
 class ObjectiveTable(_Table):
@@ -207,12 +218,13 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         cylinders=file.robot.cylinders,
     )
     mode = one_of("robot.mode", file.robot.mode, MODES)
-    if file.goal.attitude is not None and mode != "attitude-held":
+    reach = file.goal.attitude is not None and mode != "attitude-held"
+    if reach and not file.lattice.postures:
         raise InvalidInput(
             "goal.attitude",
             file.goal.attitude,
-            f"no goal attitude in the mode {mode}, where it follows from the arms; "
-            "leave it out, or use mode = 'attitude-held'",
+            f"no goal attitude in the mode {mode}, where it follows from the arms, on a lattice "
+            "without posture axes; leave it out, or use mode = 'attitude-held'",
         )
     if file.goal.position is not None and mode == "free-floating":
         raise InvalidInput(
@@ -246,7 +258,13 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         start=start,
         goal=goal,
         mode=mode,
-        lattice=Lattice(divisions=file.lattice.divisions, **axes),
+        lattice=Lattice(
+            divisions=file.lattice.divisions,
+            lateral=axes.get("lateral"),
+            normal=axes.get("normal"),
+            postures=[_posture_axis(k, table) for k, table in enumerate(file.lattice.postures)],
+        ),
+        reach_attitude=reach,
         **file.objective.model_dump(),
     )
     wanted = file.planner
@@ -258,6 +276,19 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
             raise unknown_name(f"planner ({kind.name})", key, known)
     seed = whole_number("planner.seed", wanted.seed, at_least=0)
     return Scenario(file.title, problem, kind(**settings), seed, wanted.refine)
+
+
+def _posture_axis(number: int, table: PostureTable) -> PostureAxis:
+    given = table.model_dump(exclude_none=True)
+    if set(given) == {"towards", "levels"}:
+        return PostureAxis.towards(given["towards"], given["levels"])
+    if set(given) == {"joints", "half_count", "spacing"}:
+        return PostureAxis(**given)
+    raise InvalidInput(
+        f"lattice.postures.{number}",
+        ", ".join(given) or "nothing",
+        "either towards and levels, or joints, half_count and spacing",
+    )
 
 
 @contextmanager

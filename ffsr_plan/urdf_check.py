@@ -65,7 +65,8 @@ def parse(text: str, where: str) -> ElementTree.Element:
     return root
 
 
-def _numbers(where: str, text: str | None, count: int) -> list[float]:
+def numbers(where: str, text: str | None, count: int) -> list[float]:
+    """`count` finite numbers of an attribute, or `InvalidInput` that names it."""
     allowed = f"{count} finite number{'s' if count > 1 else ''}"
     try:
         values = [float(word) for word in (text or "").split()]
@@ -83,11 +84,11 @@ def _check_inertia(link: ElementTree.Element, where: str) -> None:
     mass, inertia = inertial.find("mass"), inertial.find("inertia")
     if mass is None or inertia is None:
         raise InvalidInput(where, "inertial without mass or inertia", "both of them")
-    (value,) = _numbers(f"{where}, mass", mass.get("value"), 1)
+    (value,) = numbers(f"{where}, mass", mass.get("value"), 1)
     if value <= 0.0:
         raise InvalidInput(f"{where}, mass", value, "greater than 0 kg")
     entry = {
-        key: _numbers(f"{where}, {key}", inertia.get(key), 1)[0]
+        key: numbers(f"{where}, {key}", inertia.get(key), 1)[0]
         for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
     }
     tensor = np.array(
@@ -110,7 +111,7 @@ def _check_collision(collision: ElementTree.Element, where: str) -> None:
     origin = collision.find("origin")
     for key in ("xyz", "rpy"):
         if origin is not None and origin.get(key) is not None:
-            _numbers(f"{where} origin, {key}", origin.get(key), 3)
+            numbers(f"{where} origin, {key}", origin.get(key), 3)
     shapes = collision.findall("geometry/*")
     if len(shapes) != 1 or shapes[0].tag not in SHAPES:
         found = ", ".join(shape.tag for shape in shapes) or None
@@ -118,13 +119,13 @@ def _check_collision(collision: ElementTree.Element, where: str) -> None:
     shape = shapes[0]
     where = f"{where} {shape.tag}"
     for key, count in SHAPES[shape.tag].items():
-        sizes = _numbers(f"{where}, {key}", shape.get(key), count)
+        sizes = numbers(f"{where}, {key}", shape.get(key), count)
         if min(sizes) <= 0.0:
             raise InvalidInput(f"{where}, {key}", sizes, "greater than 0 m")
     if shape.tag == "mesh":
         if not shape.get("filename"):
             raise InvalidInput(f"{where}, filename", shape.get("filename"), "the address of a file")
-        scale = _numbers(f"{where}, scale", shape.get("scale", "1 1 1"), 3)
+        scale = numbers(f"{where}, scale", shape.get("scale", "1 1 1"), 3)
         if 0.0 in scale:
             raise InvalidInput(f"{where}, scale", scale, "three numbers other than 0")
 
@@ -137,14 +138,14 @@ def _check_joint(joint: ElementTree.Element, where: str) -> None:
         raise InvalidInput(where, "mimic", "joints that move on their own")
     axis = joint.find("axis")
     if kind != "fixed" and axis is not None:
-        values = _numbers(f"{where}, axis", axis.get("xyz"), 3)
+        values = numbers(f"{where}, axis", axis.get("xyz"), 3)
         if abs(math.hypot(*values) - 1.0) > 1e-3:
             raise InvalidInput(f"{where}, axis", values, "a vector of length 1")
     if kind in ("revolute", "prismatic"):
         limit = joint.find("limit")
         if limit is None:
             raise InvalidInput(f"{where}, limit", None, "a <limit> with lower and upper")
-        (lower,) = _numbers(f"{where}, lower limit", limit.get("lower", "0"), 1)
-        (upper,) = _numbers(f"{where}, upper limit", limit.get("upper", "0"), 1)
+        (lower,) = numbers(f"{where}, lower limit", limit.get("lower", "0"), 1)
+        (upper,) = numbers(f"{where}, upper limit", limit.get("upper", "0"), 1)
         if lower >= upper:
             raise InvalidInput(f"{where}, limit", [lower, upper], "lower less than upper")

@@ -233,6 +233,10 @@ def _ends_and_limits(plan: Plan) -> list[str]:
         overlap = abs(float(last[3:7] @ problem.goal[3:7]))
         if overlap < 1.0 - AGREEMENT:
             problems.append("the motion does not end at the goal's attitude")
+    if problem.reach_attitude:
+        overlap = min(1.0, abs(float(last[3:7] @ problem.goal[3:7])))
+        if (missed := np.degrees(2.0 * np.arccos(overlap))) > 1.0:
+            problems.append(f"the goal's attitude is missed by {missed:.3g} degrees")
     corners = plan.at(np.arange(len(plan.configurations)) / problem.lattice.divisions)
     if np.abs(corners - plan.configurations).max() > AGREEMENT:
         problems.append("the motion does not pass through the plan's configurations")
@@ -258,15 +262,17 @@ def _recomputed(plan: Plan, bodies: Bodies, problems: list[str]) -> tuple[float,
     joints = problem.robot.joint_values(q)
     turns = np.diff(joints, axis=0)
     turns = np.where(np.isinf(problem.robot.upper), (turns + np.pi) % (2 * np.pi) - np.pi, turns)
+    straight = turns.mean(axis=0)  # postures displace nothing at start and goal
     weights = np.where(problem.robot.prismatic, problem.position_weight, problem.rotation_weight)
     floats = problem.mode == "free-floating"  # what the base does there counts for nothing
     along = np.zeros(3) if floats else (problem.goal[:3] - problem.start[:3]) / m
-    nominal = np.sum((along * problem.position_weight) ** 2) + np.sum((turns[0] * weights) ** 2)
+    nominal = np.sum((along * problem.position_weight) ** 2) + np.sum((straight * weights) ** 2)
     if problem.mode == "attitude-held":
         overlap = min(1.0, abs(float(problem.start[3:7] @ problem.goal[3:7])))
         nominal += (2.0 * np.arccos(overlap) / m * problem.rotation_weight) ** 2
     across = (np.diff(q[:, :3], axis=0) - along) * (0.0 if floats else problem.position_weight)
-    length = float(np.sum(np.sqrt(nominal + np.sum(across**2, axis=1))))
+    bends = (turns - straight) * weights
+    length = float(np.sum(np.sqrt(nominal + np.sum(across**2, axis=1) + np.sum(bends**2, axis=1))))
     capped = nodes if problem.clearance_cap is None else np.minimum(nodes, problem.clearance_cap)
     objective = length / unit + problem.delta * float(np.sum(unit / capped[1:-1]))
     objective_error = abs(objective - plan.objective) / max(abs(objective), 1e-12)

@@ -1,0 +1,66 @@
+"""The last fraction of a degree: a small bend of the joint path that closes a missed attitude.
+
+The attitude at the end is the product of the turns of all joint steps. Its derivative by every
+inner corner, along every posture axis, comes from differences of the two steps beside the corner;
+of all bends that close the error to first order the least one is taken (Gauss-Newton).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan import attitude
+from ffsr_plan.inputs import Array
+from ffsr_plan.reaction import Reaction
+from ffsr_plan.robot import SpaceRobot
+
+_DIFFERENCE = 1e-5
+_ROUNDS = 6
+_CLOSE = 1e-7  # radians
+
+
+def corrected(
+    robot: SpaceRobot, start: Array, goal: Array, joint_values: Array, directions: Array
+) -> Array | None:
+    """Joint values (m + 1, nd) whose reaction ends at the goal attitude; None if none was found.
+
+    Args:
+        robot: the robot; its joint limits are kept.
+        start: (4,) attitude at the beginning (xyzw).
+        goal: (4,) attitude to end with.
+        joint_values: (m + 1, nd) corners of a path that ends near it.
+        directions: (m + 1, axes, nd) along which each corner may be displaced.
+    """
+    path = np.array(joint_values)
+    for _ in range(_ROUNDS):
+        increments = Reaction(robot, path).increments
+        chain = [start]
+        for increment in increments:
+            chain.append(attitude.multiply(chain[-1], increment))
+        missed = attitude.log(attitude.multiply(attitude.inverse(chain[-1]), goal))
+        if np.linalg.norm(missed) < _CLOSE:
+            return path
+        slope = _slopes(robot, path, directions, increments)
+        change = np.linalg.lstsq(slope, missed, rcond=None)[0].reshape(directions[1:-1].shape[:2])
+        path[1:-1] += np.einsum("ka,kai->ki", change, directions[1:-1])
+        if np.any((path < robot.lower) | (path > robot.upper)):
+            return None
+    return None
+
+
+def _slopes(robot: SpaceRobot, path: Array, directions: Array, increments: Array) -> Array:
+    """(3, (m - 1) axes) rotation at the end, in its own axes, for each unit of displacement."""
+    m, axes = len(path) - 1, directions.shape[1]
+    corners = np.repeat(np.arange(1, m), axes)
+    moved = path[1:-1, None] + _DIFFERENCE * directions[1:-1]
+    moved = moved.reshape(-1, path.shape[1])
+    before = Reaction.of_segments(robot, path[corners - 1], moved - path[corners - 1]).increments
+    behind = Reaction.of_segments(robot, moved, path[corners + 1] - moved).increments
+    rest = [attitude.IDENTITY]  # from corner k + 1 to the end, backwards
+    for increment in increments[:0:-1]:
+        rest.append(attitude.multiply(increment, rest[-1]))
+    after = np.array(rest[::-1])[corners]
+    old = attitude.multiply(increments[corners - 1], increments[corners])
+    turned = attitude.multiply(attitude.inverse(old), attitude.multiply(before, behind))
+    turned = attitude.multiply(attitude.inverse(after), attitude.multiply(turned, after))
+    return np.asarray(attitude.log(turned).T / _DIFFERENCE)
