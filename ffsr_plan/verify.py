@@ -1,7 +1,8 @@
 """The independent re-check of a plan: dense samples, closed-form distances, momentum body by body.
 
 Nothing here calls the planner's clearance, momentum, length or objective code. The motion itself,
-`plan.at`, is taken as a black box and sampled; velocities come from differences of link poses.
+`plan.at`, is taken as a black box and sampled; velocities come from differences of link poses. What
+the plan says of its wheels, `plan.wheel_momentum`, is compared with that.
 
 Where a solid stands for a cylinder or mesh (`SpaceRobot.replacements`), all distances are to that
 solid, as in the plan, and it is checked that it holds the original: the cylinder of the URDF, the
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from ffsr_plan.bodies import Bodies, pose
 from ffsr_plan.inputs import Array, whole_number
@@ -46,6 +48,9 @@ class Report:
     momentum_residual: float | None
     """Largest |angular momentum about the centre of mass| relative to the sum of the bodies' own
     shares, over all stations; None where wheels hold the attitude and may store momentum."""
+    wheel_momentum_error: float | None
+    """Largest difference between the plan's wheel momentum and the one found here, relative in the
+    same way; None in modes without wheels."""
     clearance_error: float
     """Largest difference between the plan's node clearances and the ones found here [m]."""
     objective_error: float
@@ -91,14 +96,18 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
     if plan.certificate.least_clearance > least + AGREEMENT:
         proven = plan.certificate.least_clearance
         problems.append(f"{proven:.6g} m are said to be proven, but {least:.6g} m were met")
-    residual = _momentum_residual(plan, bodies) if plan.problem.mode == "free-flying" else None
+    held = plan.problem.mode == "attitude-held"
+    residual = None if held else _momentum_residual(plan, bodies)
     if residual is not None and residual > MOMENTUM_LIMIT:
         problems.append(f"angular momentum is not conserved: residual {residual:.3g}")
+    wheel_error = _wheel_momentum_error(plan, bodies) if held else None
+    if wheel_error is not None and wheel_error > MOMENTUM_LIMIT:
+        problems.append(f"the wheels must store another momentum: error {wheel_error:.3g}")
     problems += _ends_and_limits(plan)
     clearance_error, objective_error = _recomputed(plan, bodies, problems)
     return Report(
-        not problems, tuple(problems), least, apart, residual, clearance_error, objective_error,
-        checked, largest,
+        not problems, tuple(problems), least, apart, residual, wheel_error, clearance_error,
+        objective_error, checked, largest,
     )  # fmt: skip
 
 
@@ -140,9 +149,44 @@ def _least_separation(pairs: list[tuple[Shape, Shape]], placed: dict[Shape, Arra
 
 
 def _momentum_residual(plan: Plan, bodies: Bodies) -> float:
-    """|sum of m (r - c) x (v - v_c) + I w| over bodies, relative to the sum of the terms' sizes."""
+    """|angular momentum|, relative to the sum of the terms' sizes."""
+    total, scale = _momentum(plan, bodies, _stations(plan))
+    return _relative(total, scale)
+
+
+def _wheel_momentum_error(plan: Plan, bodies: Bodies) -> float:
+    """The same for what is left when the wheels' share is added, the motion taking 1 s."""
     divisions = plan.problem.lattice.divisions
-    stations = (np.arange(divisions)[:, None] + np.array(_STATIONS)).ravel()
+    law = Polynomial([0, 0, 0, 10, -15, 6])
+    grid = np.linspace(0.0, 1.0, 100 * divisions + 1)
+    times = np.interp(_stations(plan) / divisions, law(grid), grid)
+    s, rate = law(times), law.deriv()(times) * divisions
+    total, scale = _momentum(plan, bodies, s * divisions)
+    wheels = plan.wheel_momentum(1.0, times)
+    base = _poses(plan, bodies, plan.at(s))[bodies.root][:, :3, :3]
+    turned = np.einsum("nij,nj->ni", base, wheels.vectors)
+    left = [stored + rate[:, None] * total for stored in (turned, wheels.world)]
+    return _relative(np.concatenate(left), rate * scale)
+
+
+def _stations(plan: Plan) -> Array:
+    """Where the momentum is looked at, in edges; differences stay within each edge."""
+    stations: Array = np.arange(plan.problem.lattice.divisions)[:, None] + np.array(_STATIONS)
+    return stations.ravel()
+
+
+def _relative(vectors: Array, scale: Array) -> float:
+    """Largest norm of vectors (n, 3), relative to the largest scale (k,)."""
+    largest = float(scale.max())
+    return float(np.linalg.norm(vectors, axis=1).max()) / largest if largest > 0.0 else 0.0
+
+
+def _momentum(plan: Plan, bodies: Bodies, stations: Array) -> tuple[Array, Array]:
+    """Sum of m (r - c) x (v - v_c) + I w over bodies (n, 3), and of the terms' sizes (n,).
+
+    World axes, at `stations` (n,) counted in edges [kg m^2 rad per edge].
+    """
+    divisions = plan.problem.lattice.divisions
     reach = np.arange(-4, 5) * _SPACING
     times = stations[:, None] + reach
     poses = _poses(plan, bodies, plan.at(times.ravel() / divisions))
@@ -167,12 +211,11 @@ def _momentum_residual(plan: Plan, bodies: Bodies) -> float:
     scale += np.sum(
         mass[:, :, 0] * np.linalg.norm(arms, axis=2) * np.linalg.norm(relative, axis=2), axis=0
     )
-    total = np.linalg.norm(np.sum(orbital, axis=0) + np.sum(spins, axis=0), axis=1)
+    total = np.sum(orbital, axis=0) + np.sum(spins, axis=0)
     # where nothing moves relative to the base there is only the rounding of the translation left
     rigid = np.sum(mass[:, :, 0] * np.linalg.norm(arms, axis=2), axis=0)
     floor = 1e-4 * rigid * np.linalg.norm(drift, axis=1)
-    largest = np.maximum(scale, floor).max()
-    return float(total.max() / largest) if largest > 0.0 else 0.0
+    return total, np.maximum(scale, floor)
 
 
 def _rates(frame: Array) -> tuple[Array, Array]:
