@@ -155,14 +155,14 @@ def _momentum_residual(plan: Plan, bodies: Bodies) -> float:
 
 
 def _wheel_momentum_error(plan: Plan, bodies: Bodies) -> float:
-    """The same for what is left when the wheels' share is added, the motion taking 1 s."""
-    divisions = plan.problem.lattice.divisions
+    """The same for what is left once the wheels' share is added, for one time law."""
+    divisions, duration = plan.problem.lattice.divisions, 10.0
     law = Polynomial([0, 0, 0, 10, -15, 6])
     grid = np.linspace(0.0, 1.0, 100 * divisions + 1)
-    times = np.interp(_stations(plan) / divisions, law(grid), grid)
-    s, rate = law(times), law.deriv()(times) * divisions
+    elapsed = np.interp(_stations(plan) / divisions, law(grid), grid)
+    s, rate = law(elapsed), law.deriv()(elapsed) * divisions / duration
     total, scale = _momentum(plan, bodies, s * divisions)
-    wheels = plan.wheel_momentum(1.0, times)
+    wheels = plan.wheel_momentum(duration, elapsed * duration)
     base = _poses(plan, bodies, plan.at(s))[bodies.root][:, :3, :3]
     turned = np.einsum("nij,nj->ni", base, wheels.vectors)
     left = [stored + rate[:, None] * total for stored in (turned, wheels.world)]
