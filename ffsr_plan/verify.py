@@ -30,7 +30,8 @@ AGREEMENT = 1e-9
 HULL_AGREEMENT = 1e-8  # [m], as exact as Coal's iterations make a distance to a hull
 # Central difference of eighth order: steps 1 .. 4 to either side
 _STENCIL = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])
-_SPACING = 0.05
+_SPACING = 0.05  # of an edge, and less where edges are few and therefore long
+_MANY_EDGES = 8
 _STATIONS = (0.22, 0.5, 0.78)
 
 
@@ -187,7 +188,8 @@ def _momentum(plan: Plan, bodies: Bodies, stations: Array) -> tuple[Array, Array
     World axes, at `stations` (n,) counted in edges [kg m^2 rad per edge].
     """
     divisions = plan.problem.lattice.divisions
-    reach = np.arange(-4, 5) * _SPACING
+    spacing = _SPACING * min(1.0, divisions / _MANY_EDGES)
+    reach = np.arange(-4, 5) * spacing
     times = stations[:, None] + reach
     poses = _poses(plan, bodies, plan.at(times.ravel() / divisions))
     masses, points, velocities, spins, scale = [], [], [], [], np.zeros(len(stations))
@@ -195,7 +197,7 @@ def _momentum(plan: Plan, bodies: Bodies, stations: Array) -> tuple[Array, Array
         frame = poses[link] @ (np.eye(4) if inertial.origin is None else inertial.origin)
         frame = frame.reshape(len(stations), len(reach), 4, 4)
         here = frame[:, 4]
-        velocity, angular = _rates(frame)
+        velocity, angular = _rates(frame, spacing)
         inertia = here[:, :3, :3] @ inertial.inertia @ np.swapaxes(here[:, :3, :3], 1, 2)
         spin = np.einsum("nij,nj->ni", inertia, angular)
         masses.append(inertial.mass)
@@ -218,7 +220,7 @@ def _momentum(plan: Plan, bodies: Bodies, stations: Array) -> tuple[Array, Array
     return total, np.maximum(scale, floor)
 
 
-def _rates(frame: Array) -> tuple[Array, Array]:
+def _rates(frame: Array, spacing: float) -> tuple[Array, Array]:
     """Velocity and angular velocity (n, 3) in the middle of nine poses (n, 9, 4, 4)."""
     velocity = np.zeros((len(frame), 3))
     angular = np.zeros((len(frame), 3))
@@ -228,7 +230,7 @@ def _rates(frame: Array) -> tuple[Array, Array]:
             other = frame[:, 4 + sign * k]
             velocity += sign * weight * other[:, :3, 3]
             angular += sign * weight * _rotation_vector(other[:, :3, :3] @ turn_back)
-    return velocity / _SPACING, angular / _SPACING
+    return velocity / spacing, angular / spacing
 
 
 def _rotation_vector(r: Array) -> Array:
