@@ -35,6 +35,7 @@ from ffsr_plan.result import Plan
 from ffsr_plan.roadmap import Roadmap
 from ffsr_plan.robot import SpaceRobot, load_robot, robot_names
 from ffsr_plan.scene import Scene
+from ffsr_plan.wheels import WheelMomentum
 
 if TYPE_CHECKING:
     from ffsr_plan.scenario import Scenario, load_scenario, read_scenario
@@ -64,6 +65,7 @@ __all__ = [
     "SpaceRobot",
     "StartInCollision",
     "UnprovenPath",
+    "WheelMomentum",
     "certify_edge",
     "clearance",
     "load_robot",

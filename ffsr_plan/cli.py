@@ -92,6 +92,13 @@ def plan(
     ] = None,
     out: Out = None,
     force: Force = False,
+    duration: Annotated[
+        float,
+        typer.Option(
+            help="Seconds that the motion takes, for the peak momentum of the wheels "
+            "(attitude-held plans only; it goes as 1 / duration)."
+        ),
+    ] = 600.0,
     check: Annotated[
         bool, typer.Option("--verify/--no-verify", help="Re-check the plan independently.")
     ] = True,
@@ -99,7 +106,7 @@ def plan(
     """Plan a scenario, verify the plan, and write it where --out says."""
     with _errors_on_stderr():
         target = _prepared(out, force) if out is not None else None
-        options = Options(planner, seed, refine, colonies, workers, time_limit)
+        options = Options(planner, seed, refine, colonies, workers, time_limit, duration)
         _plan_and_report(scenario, options, target, check)
 
 
@@ -146,13 +153,15 @@ class Options(NamedTuple):
     colonies: int = 1
     workers: int = 1
     time_limit: float | None = None
+    duration: float = 600.0
 
 
 def _plan_and_report(source: str, options: Options, target: Path | None, check: bool) -> None:
-    from ffsr_plan.inputs import one_of, whole_number
+    from ffsr_plan.inputs import number, one_of, whole_number
     from ffsr_plan.planner import PLANNERS
     from ffsr_plan.scenario import read_scenario
 
+    duration = number("--duration", options.duration, above=0.0)
     scenario = read_scenario(source)
     if options.planner is not None:
         settings = PLANNERS[one_of("--planner", options.planner, list(PLANNERS))]()
@@ -165,7 +174,7 @@ def _plan_and_report(source: str, options: Options, target: Path | None, check: 
     if target is not None:
         _write_results(found, scenario.title, target)
     report = _with_spinner("verifying", found.verify) if check else None
-    out_console.print(_plan_table(scenario.title, found, report))
+    out_console.print(_plan_table(scenario.title, found, report, duration))
     if target is not None:
         out_console.print(f"Written to {target}: open {target / 'plan.html'} in a browser.")
     if report is not None and not report.ok:
@@ -244,7 +253,7 @@ def _unused(base: Path) -> Path:
     return candidate
 
 
-def _plan_table(title: str, found: Plan, report: Report | None) -> Table:
+def _plan_table(title: str, found: Plan, report: Report | None, duration: float) -> Table:
     import numpy as np
 
     clearances, proof = found.clearances, found.certificate
@@ -265,6 +274,12 @@ def _plan_table(title: str, found: Plan, report: Report | None) -> Table:
         "attitude on arrival",
         "alpha {:.3f}°, beta {:.3f}°, gamma {:.3f}°".format(*angles),
     )
+    if found.problem.mode == "attitude-held":
+        wheels = found.wheel_momentum(duration)
+        table.add_row(
+            f"wheels, if it takes {duration:g} s",
+            "peak x {:.3g}, y {:.3g}, z {:.3g} N m s in base axes".format(*wheels.axis_peaks),
+        )
     table.add_row(
         "certified",
         f"{proof.edges_free} edges free, {proof.edges_refused} refused, "
@@ -297,6 +312,8 @@ def _report_rows(report: Report) -> Iterator[tuple[str, str]]:
         yield "  momentum residual", f"{report.momentum_residual:.1e} relative"
     if report.center_drift is not None:
         yield "  centre of mass", f"stays put within {report.center_drift:.1e} m"
+    if report.wheel_momentum_error is not None:
+        yield "  wheel momentum error", f"{report.wheel_momentum_error:.1e} relative"
 
 
 @contextmanager

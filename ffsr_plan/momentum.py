@@ -33,16 +33,24 @@ def connection(robot: SpaceRobot, q: ArrayLike) -> Array:
 
 def connections(robot: SpaceRobot, joint_values: Array) -> Array:
     """A(theta) for many joint values (N, nd) at once: (N, 3, nd); unchecked."""
-    count = len(joint_values)
     if robot.nd == 0:
-        return np.zeros((count, 3, 0))
+        return np.zeros((len(joint_values), 3, 0))
+    angular = angular_maps(robot, joint_values)
+    return np.asarray(-np.linalg.solve(angular[:, :, :3], angular[:, :, 3:]), dtype=np.float64)
+
+
+def angular_maps(robot: SpaceRobot, joint_values: Array) -> Array:
+    """(N, 3, 3 + nd) from base angular velocity (3,) and joint rates (nd,) to angular momentum.
+
+    About the centre of mass, in base axes [N m s], for joint values (N, nd); unchecked.
+    """
     data = robot.model.createData()
     configurations = robot.assemble(np.zeros(3), IDENTITY, joint_values)
-    angular = np.empty((count, 3, robot.model.nv - 3))
-    for k in range(count):
-        pin.computeCentroidalMap(robot.model, data, configurations[k])
+    angular = np.empty((len(joint_values), 3, robot.model.nv - 3))
+    for k, q in enumerate(configurations):
+        pin.computeCentroidalMap(robot.model, data, q)
         angular[k] = data.Ag[3:, 3:]  # the base's linear columns carry no angular momentum
-    return -np.linalg.solve(angular[:, :, :3], angular[:, :, 3:])
+    return angular
 
 
 def centers_of_mass(robot: SpaceRobot, joint_values: Array) -> Array:

@@ -19,6 +19,7 @@ from ffsr_plan.motion import Motion
 from ffsr_plan.placements import shape_placements
 from ffsr_plan.problem import Problem
 from ffsr_plan.roadmap import Certificate
+from ffsr_plan.wheels import WheelMomentum, wheel_momentum
 
 if TYPE_CHECKING:  # these import this module; a plan calls them when asked to
     from ffsr_plan.verify import Report
@@ -123,6 +124,21 @@ class Plan:
         edge = np.minimum(scaled.astype(np.int64), divisions - 1)
         q = self.motion.at(edge, scaled - edge)
         return q.reshape(*parameter.shape, self.problem.robot.model.nq)
+
+    def wheel_momentum(self, duration: float, times: ArrayLike | None = None) -> WheelMomentum:
+        """Angular momentum that the wheels of an attitude-held plan must store along the motion.
+
+        The plan is a path; here it is flown from rest to rest by s = 10 u^3 - 15 u^4 + 6 u^5,
+        u = t / duration. All momenta go as 1 / duration, for any time law s(t) as ds/dt.
+
+        Args:
+            duration: of the whole motion [s].
+            times: (N,) in [0, duration] [s]; without, 1001 evenly spaced.
+
+        Raises:
+            InvalidInput: another mode (there are no wheels), or a duration or times that cannot be.
+        """
+        return wheel_momentum(self.motion, duration, times)
 
     def trail_segments(self, most: int = 3000) -> tuple[Array, Array]:
         """Where the ants walked, faint trails first.

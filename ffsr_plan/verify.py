@@ -1,7 +1,8 @@
 """The independent re-check of a plan: dense samples, closed-form distances, momentum body by body.
 
 Nothing here calls the planner's clearance, momentum, length or objective code. The motion itself,
-`plan.at`, is taken as a black box and sampled; velocities come from differences of link poses.
+`plan.at`, is taken as a black box and sampled; velocities come from differences of link poses. What
+the plan says of its wheels, `plan.wheel_momentum`, is compared with that.
 
 Where a solid stands for a cylinder or mesh (`SpaceRobot.replacements`), all distances are to that
 solid, as in the plan, and it is checked that it holds the original: the cylinder of the URDF, the
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from ffsr_plan.bodies import Bodies, pose
 from ffsr_plan.inputs import Array, whole_number
@@ -28,7 +30,8 @@ AGREEMENT = 1e-9
 HULL_AGREEMENT = 1e-8  # [m], as exact as Coal's iterations make a distance to a hull
 # Central difference of eighth order: steps 1 .. 4 to either side
 _STENCIL = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])
-_SPACING = 0.05
+_SPACING = 0.05  # of an edge, and less where edges are few and therefore long
+_MANY_EDGES = 8
 _STATIONS = (0.22, 0.5, 0.78)
 
 
@@ -49,6 +52,9 @@ class Report:
     center_drift: float | None
     """Farthest that the centre of mass is from where it was at the start [m], over all samples;
     None where thrusters move it."""
+    wheel_momentum_error: float | None
+    """Largest difference between the plan's wheel momentum and the one found here, relative in the
+    same way; None in modes without wheels."""
     clearance_error: float
     """Largest difference between the plan's node clearances and the ones found here [m]."""
     objective_error: float
@@ -99,6 +105,9 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
     residual = None if held else _momentum_residual(plan, bodies)
     if residual is not None and residual > MOMENTUM_LIMIT:
         problems.append(f"angular momentum is not conserved: residual {residual:.3g}")
+    wheel_error = _wheel_momentum_error(plan, bodies) if held else None
+    if wheel_error is not None and wheel_error > MOMENTUM_LIMIT:
+        problems.append(f"the wheels must store another momentum: error {wheel_error:.3g}")
     drift = None
     if floats:
         drift = max(float(np.linalg.norm(c - centers[0][0], axis=1).max()) for c in centers)
@@ -107,7 +116,7 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
     problems += _ends_and_limits(plan)
     clearance_error, objective_error = _recomputed(plan, bodies, problems)
     return Report(
-        not problems, tuple(problems), least, apart, residual, drift, clearance_error,
+        not problems, tuple(problems), least, apart, residual, drift, wheel_error, clearance_error,
         objective_error, checked, largest,
     )  # fmt: skip
 
@@ -159,10 +168,46 @@ def _least_separation(pairs: list[tuple[Shape, Shape]], placed: dict[Shape, Arra
 
 
 def _momentum_residual(plan: Plan, bodies: Bodies) -> float:
-    """|sum of m (r - c) x (v - v_c) + I w| over bodies, relative to the sum of the terms' sizes."""
+    """|angular momentum|, relative to the sum of the terms' sizes."""
+    total, scale = _momentum(plan, bodies, _stations(plan))
+    return _relative(total, scale)
+
+
+def _wheel_momentum_error(plan: Plan, bodies: Bodies) -> float:
+    """The same for what is left once the wheels' share is added, for one time law."""
+    divisions, duration = plan.problem.lattice.divisions, 10.0
+    law = Polynomial([0, 0, 0, 10, -15, 6])
+    grid = np.linspace(0.0, 1.0, 100 * divisions + 1)
+    elapsed = np.interp(_stations(plan) / divisions, law(grid), grid)
+    s, rate = law(elapsed), law.deriv()(elapsed) * divisions / duration
+    total, scale = _momentum(plan, bodies, s * divisions)
+    wheels = plan.wheel_momentum(duration, elapsed * duration)
+    base = _poses(plan, bodies, plan.at(s))[bodies.root][:, :3, :3]
+    turned = np.einsum("nij,nj->ni", base, wheels.vectors)
+    left = [stored + rate[:, None] * total for stored in (turned, wheels.world)]
+    return _relative(np.concatenate(left), rate * scale)
+
+
+def _stations(plan: Plan) -> Array:
+    """Where the momentum is looked at, in edges; differences stay within each edge."""
+    stations: Array = np.arange(plan.problem.lattice.divisions)[:, None] + np.array(_STATIONS)
+    return stations.ravel()
+
+
+def _relative(vectors: Array, scale: Array) -> float:
+    """Largest norm of vectors (n, 3), relative to the largest scale (k,)."""
+    largest = float(scale.max())
+    return float(np.linalg.norm(vectors, axis=1).max()) / largest if largest > 0.0 else 0.0
+
+
+def _momentum(plan: Plan, bodies: Bodies, stations: Array) -> tuple[Array, Array]:
+    """Sum of m (r - c) x (v - v_c) + I w over bodies (n, 3), and of the terms' sizes (n,).
+
+    World axes, at `stations` (n,) counted in edges [kg m^2 rad per edge].
+    """
     divisions = plan.problem.lattice.divisions
-    stations = (np.arange(divisions)[:, None] + np.array(_STATIONS)).ravel()
-    reach = np.arange(-4, 5) * _SPACING
+    spacing = _SPACING * min(1.0, divisions / _MANY_EDGES)
+    reach = np.arange(-4, 5) * spacing
     times = stations[:, None] + reach
     poses = _poses(plan, bodies, plan.at(times.ravel() / divisions))
     masses, points, velocities, spins, scale = [], [], [], [], np.zeros(len(stations))
@@ -170,7 +215,7 @@ def _momentum_residual(plan: Plan, bodies: Bodies) -> float:
         frame = poses[link] @ (np.eye(4) if inertial.origin is None else inertial.origin)
         frame = frame.reshape(len(stations), len(reach), 4, 4)
         here = frame[:, 4]
-        velocity, angular = _rates(frame)
+        velocity, angular = _rates(frame, spacing)
         inertia = here[:, :3, :3] @ inertial.inertia @ np.swapaxes(here[:, :3, :3], 1, 2)
         spin = np.einsum("nij,nj->ni", inertia, angular)
         masses.append(inertial.mass)
@@ -186,15 +231,14 @@ def _momentum_residual(plan: Plan, bodies: Bodies) -> float:
     scale += np.sum(
         mass[:, :, 0] * np.linalg.norm(arms, axis=2) * np.linalg.norm(relative, axis=2), axis=0
     )
-    total = np.linalg.norm(np.sum(orbital, axis=0) + np.sum(spins, axis=0), axis=1)
+    total = np.sum(orbital, axis=0) + np.sum(spins, axis=0)
     # where nothing moves relative to the base there is only the rounding of the translation left
     rigid = np.sum(mass[:, :, 0] * np.linalg.norm(arms, axis=2), axis=0)
     floor = 1e-4 * rigid * np.linalg.norm(drift, axis=1)
-    largest = np.maximum(scale, floor).max()
-    return float(total.max() / largest) if largest > 0.0 else 0.0
+    return total, np.maximum(scale, floor)
 
 
-def _rates(frame: Array) -> tuple[Array, Array]:
+def _rates(frame: Array, spacing: float) -> tuple[Array, Array]:
     """Velocity and angular velocity (n, 3) in the middle of nine poses (n, 9, 4, 4)."""
     velocity = np.zeros((len(frame), 3))
     angular = np.zeros((len(frame), 3))
@@ -204,7 +248,7 @@ def _rates(frame: Array) -> tuple[Array, Array]:
             other = frame[:, 4 + sign * k]
             velocity += sign * weight * other[:, :3, 3]
             angular += sign * weight * _rotation_vector(other[:, :3, :3] @ turn_back)
-    return velocity / _SPACING, angular / _SPACING
+    return velocity / spacing, angular / spacing
 
 
 def _rotation_vector(r: Array) -> Array:

@@ -108,12 +108,25 @@ def test_every_planner_can_be_chosen_and_refinement_switched_off(run):
     assert result.exit_code == 0
 
 
+def test_the_peak_momentum_of_wheels_is_printed_where_there_are_wheels(run, tmp_path):
+    goal = "attitude = [0.6, 0.0, 0.0]"
+    held = QUICK.replace("[goal]", f"mode = 'attitude-held'\n[goal]\n{goal}")
+    (tmp_path / "held.toml").write_text(held)
+    result = run("plan", "held.toml")
+    assert result.exit_code == 0, result.output
+    assert "wheels, if it takes 600 s" in result.stdout
+    assert "wheel momentum error" in result.stdout
+    assert "wheels, if it takes 60 s" in run("plan", "held.toml", "--duration", 60).stdout
+    assert "wheel" not in run("plan", "quick.toml").stdout
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
         ("plan", "missing.toml"),
         ("plan", "quick.toml", "--planner", "ants"),
         ("plan", "quick.toml", "--seed", "-1"),
+        ("plan", "quick.toml", "--duration", "0"),
         ("plan", "quick.toml", "--seed", "one"),
         ("plan", "quick.toml", "--out", "quick.toml"),
         ("verify", "missing.json"),

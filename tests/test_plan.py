@@ -134,6 +134,20 @@ def moved(plan, **changes):
     return replace(plan, **changes)
 
 
+@pytest.mark.parametrize("mode", ["free-flying", "attitude-held"])
+@pytest.mark.parametrize("divisions", [2, 3])
+def test_momentum_is_summed_sharply_where_arms_move_far_on_few_edges(mode, divisions):
+    for seed in (7, 15, 16, 20):
+        robot = random_robot(seed)
+        ends = (robot.assemble(np.array([x, 0.0, 0.0]), attitude.IDENTITY, np.full(robot.nd, v))
+                for x, v in ((0.0, -2.9), (6.0, 2.9)))  # fmt: skip
+        robot.collision_model.removeAllCollisionPairs()
+        problem = fp.Problem(robot, fp.Scene(), *ends, mode, fp.Lattice(divisions))
+        report = fp.plan(problem, fp.LatticeOptimum(), refine=False).verify(5)
+        error = report.wheel_momentum_error if mode != "free-flying" else report.momentum_residual
+        assert error < 1e-9
+
+
 def test_verification_notices_an_obstacle_that_the_planner_did_not_see(fig2a_plan):
     problem = fig2a_plan.problem
     in_the_way = fig2a_plan.at(0.4123)[:3] + np.array([0.0, 0.0, 0.3])
