@@ -87,26 +87,23 @@ class Bodies:
         return found
 
     def pairs(self) -> list[tuple[Shape, Shape]]:
-        """Shapes that must not touch: not of one rigid body, nor of two that a joint links.
+        """Shapes that must not touch.
 
-        Nor of two links that the SRDF exempts.
+        Not of one rigid body, nor of links between which lie just one moving joint and links
+        without a shape, nor of links that the SRDF exempts.
         """
-        body, carrier = {self.root: self.root}, {self.root: ""}
-        waiting = [self.root]
-        while waiting:
-            parent = waiting.pop()
-            for joint in self._children[parent]:
-                rigid = joint.type == "fixed"
-                body[joint.child] = body[parent] if rigid else joint.child
-                carrier.setdefault(body[joint.child], body[parent])
-                waiting.append(joint.child)
+        beside: dict[str, list[tuple[str, int]]] = {name: [] for name in self._children}
+        for parent, joints in self._children.items():
+            for joint in joints:
+                moves = int(joint.type != "fixed")
+                beside[parent].append((joint.child, moves))
+                beside[joint.child].append((parent, moves))
+        shaped = {shape.link for shape in self.shapes}
         return [
             (a, b)
             for a, b in combinations(self.shapes, 2)
-            if body[a.link] != body[b.link]
-            and carrier[body[a.link]] != body[b.link]
-            and carrier[body[b.link]] != body[a.link]
-            and frozenset((a.link, b.link)) not in self._exempt
+            if frozenset((a.link, b.link)) not in self._exempt
+            and b.link not in _may_touch(a.link, beside, shaped)
         ]
 
     def link_poses(self, base: Array, joints: dict[str, Array]) -> dict[str, Array]:
@@ -189,3 +186,23 @@ def _placement(origin: ElementTree.Element | None) -> Array:
         result = turn @ result
     result[:3, 3] = np.array(origin.get("xyz", "0 0 0").split(), dtype=np.float64)
     return result
+
+
+def _may_touch(link: str, beside: dict[str, list[tuple[str, int]]], shaped: set[str]) -> set[str]:
+    """Links that may touch `link`, itself among them.
+
+    A walk over joints, of which at most one moves, and none on a way past another shape.
+    """
+    found: set[str] = set()
+    waiting, seen = [(link, 0, False)], set()
+    while waiting:
+        here, moved, passed = state = waiting.pop()
+        if state in seen:
+            continue
+        seen.add(state)
+        found.add(here)
+        passed |= here in shaped and here != link
+        for other, moves in beside[here]:
+            if moved + moves <= (0 if passed else 1):
+                waiting.append((other, moved + moves, passed))
+    return found

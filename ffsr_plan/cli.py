@@ -256,6 +256,8 @@ def _unused(base: Path) -> Path:
 def _plan_table(title: str, found: Plan, report: Report | None, duration: float) -> Table:
     import numpy as np
 
+    from ffsr_plan.result import proven
+
     clearances, proof = found.clearances, found.certificate
     angles = np.degrees(found.arrival_attitude)
     heading = Text(title) if title else None  # not markup: titles may hold brackets
@@ -264,16 +266,21 @@ def _plan_table(title: str, found: Plan, report: Report | None, duration: float)
     table.add_row("objective F", f"{found.objective:.4f}")
     table.add_row(
         "on the lattice",
-        f"F {found.lattice_objective:.4f}, optimum {found.optimum:.4f}, gap {found.gap:.3%}",
+        f"F {found.lattice_objective:.4f}, "
+        + ("optimum" if found.optimum_is_exact else "lower bound")
+        + f" {found.optimum:.4f}, gap {found.gap:.3%}",
     )
     table.add_row(
         "clearance at nodes", f"least {clearances.min():.4f} m, mean {clearances.mean():.4f} m"
     )
-    table.add_row("proven along the motion", f"at least {proof.least_clearance:.6f} m")
+    table.add_row("proven along the motion", f"at least {proven(proof.least_clearance)}")
     table.add_row(
         "attitude on arrival",
         "alpha {:.3f}°, beta {:.3f}°, gamma {:.3f}°".format(*angles),
     )
+    if found.arrival_attitude_error is not None:
+        missed = np.degrees(found.arrival_attitude_error)
+        table.add_row("goal attitude", f"missed by {missed:.2g}°, brought about by the arms")
     if found.problem.mode == "attitude-held":
         wheels = found.wheel_momentum(duration)
         table.add_row(

@@ -12,6 +12,8 @@ from __future__ import annotations
 import heapq
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from ffsr_plan.inputs import Array
 
 ROUNDING = 1e-9
@@ -72,7 +74,7 @@ def certify(edge: Edge, ends: tuple[float, float], tolerance: float) -> Verdict:
         if bound > 0.0:
             continue
         # here min(first, last) <= travel / 2: at or below the tolerance once the interval is short
-        if travel <= 2.0 * tolerance:
+        if travel <= 2.0 * max(tolerance, edge.rounding):
             return Verdict(False, *min((first, begin), (last, end)), queries)
         middle = 0.5 * (begin + end)
         clearance = edge.clearance(middle)
@@ -106,7 +108,7 @@ def clearance_bound(
     met = min(met, *ends)
     near = 1.0 - slack
     heap = [(_proven(edge, 0.0, 1.0, *ends, near * met)[0], 0.0, 1.0, *ends)]
-    while met - heap[0][0] > max(slack * met, ROUNDING):
+    while met - heap[0][0] > max(slack * met, edge.rounding):
         _, begin, end, first, last = heapq.heappop(heap)
         middle = 0.5 * (begin + end)
         clearance = edge.clearance(middle)
@@ -129,9 +131,9 @@ def _proven(
     if bound > enough:
         return bound, travel
     each = edge.travel(begin, end) + edge.rounding
-    travel = min(travel, float(each.max()))
+    travel = min(travel, float(each.max(initial=0.0)))
     bound = 0.5 * (first + last - travel)
     if bound > enough:
         return bound, travel
     spare = edge.parts(begin) + edge.parts(end) - each
-    return max(bound, 0.5 * float(spare.min())), travel
+    return max(bound, 0.5 * float(spare.min(initial=np.inf))), travel

@@ -6,6 +6,8 @@ import difflib
 import math
 from collections.abc import Iterable
 
+_NAMED = 12  # obstacles in a message
+
 
 class FfsrPlanError(Exception):
     """Root of every error that ffsr-plan raises on purpose."""
@@ -50,8 +52,9 @@ class _InCollision(PlanningError):  # noqa: N818 - so are the names of its kinds
         self.obstacle = obstacle
         self.depth = depth
         other = f"obstacle {obstacle}" if isinstance(obstacle, int) else f"link '{obstacle}'"
+        hint = "" if isinstance(obstacle, int) else "; an SRDF can exempt links that may touch"
         super().__init__(
-            f"{self.where} in collision: link '{link}' is {depth:.4g} m inside {other}"
+            f"{self.where} in collision: link '{link}' is {depth:.4g} m inside {other}{hint}"
         )
 
     def __reduce__(self) -> tuple[type, tuple[str, int | str, float]]:
@@ -82,7 +85,10 @@ class NoPath(PlanningError):  # noqa: N818 - the name is part of the public cont
         self.layer = layer
         self.obstacles = obstacles
         self.divisions = divisions
-        spheres = ", ".join(str(o) for o in obstacles if isinstance(o, int))
+        numbers = [str(o) for o in obstacles if isinstance(o, int)]
+        spheres = ", ".join(numbers[:_NAMED])
+        if len(numbers) > _NAMED:
+            spheres += f" and {len(numbers) - _NAMED} more"
         links = ", ".join(f"'{o}'" for o in obstacles if isinstance(o, str))
         blame = [
             f"obstacles {spheres}" if spheres else "",

@@ -12,6 +12,7 @@ import pinocchio as pin
 
 from ffsr_plan.inputs import Array
 from ffsr_plan.lattice import path_frame
+from ffsr_plan.result import proven
 from ffsr_plan.robot import SpaceRobot
 
 if TYPE_CHECKING:
@@ -69,11 +70,11 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
     axes.autoscale_view()
     axes.margins(0.03)
     axes.set_xlabel("along the path frame's z' [m]")
-    seen = ", seen along the normal y'" if problem.lattice.normal is not None else ""
+    seen = ", projected along the normal y'" if problem.lattice.normal is not None else ""
     axes.set_ylabel(f"lateral x' [m]{seen}")
     axes.set_title(
         f"L = {plan.length:.2f} m, F = {plan.objective:.1f}, δ = {problem.delta:g}, "
-        f"proven clearance {plan.certificate.least_clearance:.3f} m"
+        f"proven clearance {proven(plan.certificate.least_clearance)}"
     )
     return figure
 
@@ -104,7 +105,8 @@ def convergence_figure(plan: Plan) -> Figure:
     axes.plot(cycles, history.mean, color=_OBSTACLE, lw=1.2, label="mean of the cycle")
     axes.plot(cycles, history.iteration_best, color=_START, lw=1.0, label="best of the cycle")
     axes.step(cycles, history.best, color=_PATH, lw=1.8, where="post", label="best so far")
-    axes.axhline(plan.optimum, color="#2f8f4e", ls="--", lw=1.0, label="lattice optimum")
+    name = "lattice optimum" if plan.optimum_is_exact else "lower bound"
+    axes.axhline(plan.optimum, color="#2f8f4e", ls="--", lw=1.0, label=name)
     axes.set_xlabel("cycle")
     axes.set_ylabel("F")
     other = axes.twinx()

@@ -23,6 +23,7 @@ from ffsr_plan.scene import Scene
 
 _SLACK = 0.05  # between the clearance proven along a path and the least one met, relative
 _ITERATED = 1e-7  # travel [m] for distances that Coal iterates to 1e-8 (`shapes.sharpen`)
+_RELATIVE = 4e-9  # and for each metre between the middles of what they are taken between
 _STILL = np.zeros(3)
 
 
@@ -37,19 +38,25 @@ class Prover:
 
     def __init__(self, nominal: Motion, scene: Scene, tolerance: float) -> None:
         self._motion, self._tolerance = nominal, tolerance
-        self._obstacles, self._self = ObstacleQuery(nominal.robot, scene), SelfQuery(nominal.robot)
+        self._self = SelfQuery(nominal.robot)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
         self._placed: dict[float, Placements] = {}
         self._corners = shape_placements(nominal.robot, nominal.configurations())
         self.speeds = self._travel.speeds
-        closed_forms = bool(nominal.robot.primitives.exact.all())
-        self.rounding = ROUNDING + self._travel.slack + (0.0 if closed_forms else _ITERATED)
+        self._look_among(scene)
 
     def among(self, scene: Scene) -> Prover:
         """The same motion among other obstacles; what does not depend on them is shared."""
         twin = copy.copy(self)
-        twin._obstacles = ObstacleQuery(self._motion.robot, scene)
+        twin._look_among(scene)
         return twin
+
+    def _look_among(self, scene: Scene) -> None:
+        robot = self._motion.robot
+        self._obstacles = ObstacleQuery(robot, scene)
+        self.rounding = ROUNDING + self._travel.slack
+        if not robot.primitives.exact.all():
+            self.rounding += _ITERATED + _RELATIVE * float(np.max(scene.radii, initial=0.0))
 
     @property
     def queries(self) -> int:
@@ -81,7 +88,7 @@ class Prover:
             edge = _ObstacleEdge(self, layer, offsets[layer], offsets[layer + 1])
             here, met = clearance_bound(edge, ends, met, _SLACK)
             bound = min(bound, here)
-        return bound
+        return max(bound, 0.0)  # no less: the edges have been proven free
 
     def nearest(self, layer: int, tail: Array, head: Array, time: float) -> Nearest:
         """The nearest link and obstacle at a time on an edge."""

@@ -222,6 +222,15 @@ class Plan:
     __hash__ = None  # type: ignore[assignment]  # equality is by content
 
 
+def proven(clearance: float) -> str:
+    """A lower bound [m] in three digits, rounded down, as lower bounds must be."""
+    if not 0.0 < clearance < np.inf:
+        return f"{clearance:g} m"
+    digits = 2 - int(np.floor(np.log10(clearance)))
+    scale = 10.0**digits
+    return f"{np.floor(clearance * scale) / scale:.{max(digits, 0)}f} m"
+
+
 def _logarithmic(amount: NDArray[Any]) -> Array:
     """Amounts >= 0 on a logarithmic scale from 0 to 1."""
     amount = amount.astype(np.float64)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
+from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
@@ -316,13 +317,13 @@ def robot_from_urdf(
     _check_loaded(name, model, collision, counts)
     links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
     disabled = disabled_pairs(srdf, f"{name}, SRDF", links)
-    shapes = collision.geometryObjects
+    tied = _tied(parse(text, name))
+    shapes = [(str(model.frames[g.parentFrame].name)) for g in collision.geometryObjects]
     for a, first in enumerate(shapes):
         for b, second in enumerate(shapes[:a]):
-            ends = sorted(model.frames[g.parentFrame].name for g in (first, second))
-            if tuple(ends) in disabled or _adjacent(model, first.parentJoint, second.parentJoint):
-                continue
-            collision.addCollisionPair(pin.CollisionPair(b, a))
+            ends = tuple(sorted((first, second)))
+            if ends not in disabled and not tied(first, second):
+                collision.addCollisionPair(pin.CollisionPair(b, a))
     robot = SpaceRobot(
         name, text, model, collision, visual_model(model, text, folders), tuple(folders),
         replacements, containers, corners, srdf, disabled,
@@ -338,8 +339,33 @@ def _read(what: str, path: Path) -> str:
         raise InvalidInput(what, str(path), f"a readable UTF-8 file ({error})") from None
 
 
-def _adjacent(model: pin.Model, i: int, j: int) -> bool:
-    return bool(i == j or model.parents[i] == j or model.parents[j] == i)
+def _tied(robot: ElementTree.Element) -> Callable[[str, str], bool]:
+    """Whether two links may touch: of one rigid body, or with one moving joint between them.
+
+    Links without a shape of their own, such as mounts, do not count as lying between.
+    """
+    above: dict[str, tuple[str, bool]] = {}
+    for joint in robot.findall("joint"):
+        ends = {end.tag: str(end.get("link")) for end in joint if end.tag in ("parent", "child")}
+        above[ends["child"]] = (ends["parent"], joint.get("type") != "fixed")
+    shaped = {link.get("name") for link in robot.findall("link") if link.findall("collision")}
+
+    def way_up(link: str) -> list[str]:
+        links = [link]
+        while links[-1] in above:
+            links.append(above[links[-1]][0])
+        return links
+
+    def tied(first: str, second: str) -> bool:
+        up, down = way_up(first), way_up(second)
+        while len(up) > 1 and len(down) > 1 and up[-2] == down[-2]:
+            up.pop()
+            down.pop()
+        moving = sum(above[link][1] for link in (*up[:-1], *down[:-1]))
+        between = {*up, *down} - {first, second}
+        return moving == 0 or (moving == 1 and not between & shaped)
+
+    return tied
 
 
 def _check_loaded(

@@ -16,6 +16,8 @@ from ffsr_plan.attitude import angle_between
 from ffsr_plan.collision import ObstacleQuery
 from ffsr_plan.inputs import Array
 from ffsr_plan.lattice import path_frame
+from ffsr_plan.placements import shape_placements
+from ffsr_plan.result import proven
 from ffsr_plan.robot import SpaceRobot
 
 if TYPE_CHECKING:
@@ -83,8 +85,9 @@ def page(plan: Plan, title: str = "") -> str:
     data = {
         "title": title or f"{plan.problem.robot.name}, {plan.problem.mode}",
         "subtitle": f"{plan.planner.name}: L {plan.length:.3f} m, F {plan.objective:.2f}, "
-        f"δ {plan.problem.delta:g}, lattice gap {plan.gap:.2%}, "
-        f"proven clearance {plan.certificate.least_clearance:.3f} m",
+        f"δ {plan.problem.delta:g}, {'lattice gap' if plan.optimum_is_exact else 'bound'} "
+        f"{plan.gap:.2%}, "
+        f"proven clearance {proven(plan.certificate.least_clearance)}",
         "commands": log.commands,
         "seconds": SECONDS,
         "clearances": [round(float(c), 5) if np.isfinite(c) else None for c in clearances],
@@ -120,7 +123,8 @@ def _set_up(viewer: Any, plan: Plan) -> dict[str, float]:  # noqa: ANN401 - mesh
     viewer["/Cameras/default/rotated/<object>"].set_property("fov", fov)
     axes = _view_axes(plan)
     scene = plan.problem.scene
-    points = [plan.configurations[:, :3] @ axes.T]
+    shapes = shape_placements(plan.problem.robot, plan.configurations).positions
+    points = [np.vstack([plan.configurations[:, :3], shapes.reshape(-1, 3)]) @ axes.T]
     points += [scene.centers @ axes.T + s * scene.radii[:, None] for s in (-1.0, 1.0)]
     cloud = np.vstack(points)
     low, high = cloud.min(axis=0), cloud.max(axis=0)
@@ -128,7 +132,7 @@ def _set_up(viewer: Any, plan: Plan) -> dict[str, float]:  # noqa: ANN401 - mesh
     root[:3, :3] = axes
     root[:3, 3] = -0.5 * (low + high)
     viewer.set_transform(root)
-    margin = 1.6  # the arms
+    margin = 0.8  # beyond the middles of the links
     width, height = high[0] - low[0] + margin, high[1] - low[1] + margin
     return {"width": width, "height": height, "fov": fov, "elevation": math.radians(62.0)}
 

@@ -4,11 +4,13 @@ import pickle
 
 import numpy as np
 import pytest
+from builders import cylinder, inertial, link, urdf
 from grazing import SURELY_FREE, look_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ffsr_plan as fp
+from ffsr_plan.robot import robot_from_urdf
 
 BESIDE_THE_ARMS = fp.Scene([[0.1, 1.2, 0.0], [1.0, -1.5, 0.0]], [0.1, 0.1])
 
@@ -127,3 +129,41 @@ def test_arguments_are_checked_by_name(robot, wrong, named):
     given_ = {"robot": robot, "scene": fp.Scene(), "begin": q, "end": q, **wrong}
     with pytest.raises(fp.InvalidInput, match=named):
         fp.certify_edge(**given_)
+
+
+def cylinder_beside(gap):
+    """A prism of 24 sides with a ball `gap` beside one of its flat sides."""
+    robot = robot_from_urdf(
+        urdf(link("base", inertial(1.0, (1.0, 1.0, 1.0)), cylinder(0.3, 1.0))), "can"
+    )
+    return robot, fp.Scene([[0.0, 0.5 + 0.3 + gap, 0.0]], [0.5])
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-4, 1e-6, 3e-7])
+def test_a_proof_ends_however_near_a_hull_comes(gap):
+    """The margin for what Coal iterates may be more than is left: then the motion is refused."""
+    robot, scene = cylinder_beside(gap)
+    proof = fp.certify_edge(robot, scene, robot.neutral(), robot.neutral())
+    assert proof.free or gap < 1e-6
+    assert 0.0 <= proof.proven_clearance <= gap + 1e-8
+
+
+def test_the_margin_of_a_proof_grows_with_the_sphere_that_a_hull_is_near():
+    """Coal's iterations are relative to the distance of the middles, here 5 km and 50 km."""
+    for radius in (5e3, 5e4):
+        robot, _ = cylinder_beside(0.1)
+        q = robot.neutral()
+        for inside in (-2e-7, 2e-7):
+            center = [[0.0, radius + 0.3 - inside, 0.0]]
+            proof = fp.certify_edge(robot, fp.Scene(center, [radius]), q, q)
+            assert proof.proven_clearance <= max(0.0, -inside)
+
+
+def test_a_robot_without_shapes_is_free_everywhere():
+    robot = robot_from_urdf(urdf(link("base", inertial(1.0, (1.0, 1.0, 1.0)))), "ghost")
+    begin, end = robot.neutral(), robot.configuration((3, 0, 0))
+    for scene in (fp.Scene(), fp.Scene([[1.0, 0.0, 0.0]], [0.5])):
+        assert fp.certify_edge(robot, scene, begin, end).free
+        lattice = fp.Lattice(4, fp.Axis(1, 0.5))
+        plan = fp.plan(fp.Problem(robot, scene, begin, end, lattice=lattice))
+        assert plan.verify(10).ok

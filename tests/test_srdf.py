@@ -116,3 +116,35 @@ divisions = 4
     (tmp_path / "one.toml").write_text(text.replace('cylinders = "capsule"', 'cylinders = "cap"'))
     with pytest.raises(fp.InvalidInput, match="cylinders"):
         fp.load_scenario(tmp_path / "one.toml")
+
+
+SWEPT = urdf(
+    link("bus", inertial(50.0, (5.0, 5.0, 5.0)) + box((1.0, 1.0, 1.0))),
+    link("panel", inertial(5.0, (1.0, 1.0, 1.0)) + box((0.05, 2.0, 0.5))),
+    link("mount", inertial(0.1, (0.01, 0.01, 0.01))),
+    link("arm", inertial(2.0, (0.1, 0.1, 0.1)) + box((1.6, 0.1, 0.1), (0.8, 0, 0))),
+    joint("bolt", "fixed", "bus", "panel", (0, 1.6, 0)),
+    joint("plate", "fixed", "bus", "mount", (0.5, 0, 0)),
+    joint("j", "revolute", "mount", "arm", (0, 0, 0)),
+)
+
+
+def test_an_arm_is_kept_clear_of_what_is_bolted_to_the_bus():
+    """A panel on a fixed joint belongs to the bus, and is still no neighbour of the arm."""
+    robot = robot_from_urdf(SWEPT, "swept")
+    assert planned_pairs(robot) == checked_pairs(robot) == {frozenset(("panel", "arm"))}
+    begin, end = (robot.configuration(joints={"j": angle}) for angle in (1.0, 2.9))
+    proof = fp.certify_edge(robot, fp.Scene(), begin, end)
+    assert not proof.free
+    assert {proof.link, proof.obstacle} == {"panel", "arm"}
+    problem = fp.Problem(robot, fp.Scene(), begin, end, lattice=fp.Lattice(20))
+    with pytest.raises(fp.NoPath, match="self-collision"):
+        fp.plan(problem)
+
+
+def test_links_that_touch_at_the_start_say_how_to_exempt_them():
+    robot = robot_from_urdf(SWEPT, "swept")
+    begin, end = (robot.configuration(joints={"j": angle}) for angle in (2.0, 0.0))
+    problem = fp.Problem(robot, fp.Scene(), begin, end, lattice=fp.Lattice(20))
+    with pytest.raises(fp.StartInCollision, match="an SRDF can exempt"):
+        fp.plan(problem)
