@@ -61,3 +61,18 @@ def cloud(
         if len(sizes) == count:
             return Scene(centers, sizes)
     raise InvalidInput("cloud spared", spared, "balls that leave room for the cloud")
+
+
+def gate(along: float, aside: float, opening: float, radius: float) -> Scene:
+    """Two spheres in the world's xy-plane that leave a gap for who travels along x.
+
+    Args:
+        along: x of both centres [m].
+        aside: y of the middle of the gap [m].
+        opening: width of the gap [m], greater than 0.
+        radius: of the spheres [m], greater than 0.
+    """
+    x, y = number("gate along", along), number("gate aside", aside)
+    half = 0.5 * number("gate opening", opening, above=0.0)
+    size = number("gate radius", radius, above=0.0)
+    return Scene([[x, y + half + size, 0.0], [x, y - half - size, 0.0]], [size, size])

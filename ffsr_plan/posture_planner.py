@@ -67,11 +67,13 @@ def plan_postures(
         UnprovenPath: what was found could not be proven free.
     """
     if not isinstance(planner, MaxMinAntSystem):
-        raise InvalidInput(
-            "planner", planner.name,
-            f"{MaxMinAntSystem.name}: with posture axes the attitude at a node depends on the way "
-            "there, so that no search over nodes alone is exact"
-        )  # fmt: skip
+        reason = "posture axes are searched by the colony alone"
+        if problem.mode != "attitude-held":
+            reason = (
+                "with posture axes the attitude at a node depends on the way there, so that no "
+            )
+            reason += "search over nodes alone is exact"
+        raise InvalidInput("planner", planner.name, f"{MaxMinAntSystem.name}: {reason}")
     from ffsr_plan.colony import posture_colony as colony
 
     lattice = PostureLattice(problem)
