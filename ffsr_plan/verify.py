@@ -30,6 +30,7 @@ AGREEMENT = 1e-9
 HULL_AGREEMENT = 1e-8  # [m], as exact as Coal's iterations make a distance to a hull
 # Central difference of eighth order: steps 1 .. 4 to either side
 _STENCIL = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])
+_CLOSE = 0.02  # bounding spheres [m] that lie farther apart say enough
 _SPACING = 0.05  # of an edge, and less where edges are few and therefore long
 _MANY_EDGES = 8
 _STATIONS = (0.22, 0.5, 0.78)
@@ -160,7 +161,7 @@ def _least_separation(pairs: list[tuple[Shape, Shape]], placed: dict[Shape, Arra
     for a, b in pairs:
         pose_a, pose_b = placed[a], placed[b]
         apart = np.linalg.norm(pose_a[:, :3, 3] - pose_b[:, :3, 3], axis=1) - a.radius - b.radius
-        close = apart <= 0.0
+        close = apart <= _CLOSE
         least = min(least, float(np.min(apart[~close], initial=np.inf)))
         if close.any():
             least = min(least, float(separation(a, pose_a[close], b, pose_b[close]).min()))

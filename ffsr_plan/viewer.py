@@ -82,11 +82,11 @@ def page(plan: Plan, title: str = "") -> str:
     _animate(viewer, plan.problem.robot, frames)
     query = ObstacleQuery(plan.problem.robot, plan.problem.scene)
     clearances = query.distances(frames)
+    gap = "lattice gap" if plan.optimum_is_exact else "gap to a lower bound"
     data = {
         "title": title or f"{plan.problem.robot.name}, {plan.problem.mode}",
         "subtitle": f"{plan.planner.name}: L {plan.length:.3f} m, F {plan.objective:.2f}, "
-        f"δ {plan.problem.delta:g}, {'lattice gap' if plan.optimum_is_exact else 'bound'} "
-        f"{plan.gap:.2%}, "
+        f"δ {plan.problem.delta:g}, {gap} {plan.gap:.2%}, "
         f"proven clearance {proven(plan.certificate.least_clearance)}",
         "commands": log.commands,
         "seconds": SECONDS,
