@@ -49,7 +49,7 @@ def plan(
             whatever the number of workers.
         refine: whether to move the path off the lattice in the end, to where F is lower.
         colonies: independent colonies; the best path of all is returned.
-        workers: processes that they are spread over.
+        workers: processes that they are spread over; with posture axes colonies run one by one.
         time_limit: [s] for the search, from its beginning; setting up the lattice before it, and
             the optimum and the refinement after it, are not cut short.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.

@@ -1,6 +1,8 @@
 """Gates that only stowed arms pass, with a goal attitude that only the arms can bring about."""
 
+import contextlib
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -81,3 +83,14 @@ def test_a_held_attitude_passes_the_gate_too():
     report = plan.verify(200)
     assert report.ok, report.problems
     assert np.max(plan.wheel_momentum(duration=600.0).peak) > 0.0
+
+
+def test_the_colony_can_be_followed_and_cut_short_among_postures():
+    problem, seen = fp.load_scenario("gate"), []
+    plan = fp.plan(problem, seed=0, on_cycle=seen.append)
+    assert [c.number for c in seen] == list(range(1, len(seen) + 1))
+    assert all(a.best >= b.best for a, b in pairwise(seen))
+    assert seen[0].counts.sum() == seen[0].counts.shape[0] * 30
+    assert plan.history.best[-1] <= seen[-1].best
+    with contextlib.suppress(fp.PlanningError):  # if nothing that holds was found so soon
+        assert fp.plan(problem, seed=0, time_limit=0.05).interrupted

@@ -16,7 +16,7 @@ import numpy as np
 from ffsr_plan.attitude import rotate, slerp
 from ffsr_plan.colony.posture_cost import Ground, path_cost, step_between
 from ffsr_plan.colony.posture_walk import anneal, cost_to_go, deposit, walk
-from ffsr_plan.colony.records import History, Watch
+from ffsr_plan.colony.records import Cycle, History, Watch
 from ffsr_plan.compiling import call
 from ffsr_plan.inputs import Array, IntArray, frozen
 from ffsr_plan.posture_lattice import PostureLattice
@@ -110,6 +110,17 @@ def search(
                 best, best_cost, stale = improved, cost, 0
             distinct = len({b.tobytes() + p.tobytes() for b, p in paths})
             records.append((best_cost, cost, float(np.mean(costs)), distinct))
+            if watch.on_cycle is not None:
+                nodes = [b * count + p for b, p in (best, *paths)]
+                counts = np.zeros((m + 1, offsets_count * count), dtype=np.int64)
+                np.add.at(counts, (np.arange(m + 1), np.array(nodes[1:])), 1)
+                unit = lattice.problem.length_unit
+                watch.on_cycle(
+                    Cycle(
+                        len(records), cycles, best_cost / unit, cost / unit,
+                        float(np.mean(costs)) / unit, distinct, nodes[0], counts, tau,
+                    )
+                )  # fmt: skip
             if pheromone:
                 _lay(ground, best if len(records) % 3 == 0 else improved, tau, tau_posture)
             if stale >= _PATIENCE:

@@ -30,11 +30,13 @@ class Cycle(NamedTuple):
     distinct: int
     """Different paths among the ants; 1 is stagnation."""
     path: IntArray
-    """(m + 1,) nodes of the best path so far."""
+    """(m + 1,) nodes of the best path so far; with posture axes, base offset times the number of
+    postures plus posture."""
     counts: IntArray
     """(m + 1, n) ants on each node in this cycle (b_j of Eq. 10)."""
     pheromone: Array
-    """(m, n, n) tau of each edge; a view that the colony goes on changing."""
+    """(m, n, n) tau of each edge, with posture axes of each change of the base offset; a view that
+    the colony goes on changing."""
 
 
 OnCycle = Callable[[Cycle], object]
