@@ -15,7 +15,6 @@ import numpy as np
 from ffsr_plan.attitude import angle_between
 from ffsr_plan.attitude_correction import corrected
 from ffsr_plan.colony.max_min import MaxMinAntSystem
-from ffsr_plan.colony.posture_cost import Ground
 from ffsr_plan.colony.records import Planner, Trails, Watch
 from ffsr_plan.errors import (
     AttitudeOutOfReach,
@@ -78,7 +77,7 @@ def plan_postures(
 
     lattice = PostureLattice(problem)
     _check_start(problem)
-    ground: Ground = colony.ground_of(lattice)
+    ground = colony.ground_of(lattice)
     found = colony.search(
         lattice, ground, planner.ants, planner.cycles, planner.pheromone, rng, watch
     )
