@@ -44,7 +44,10 @@ def reduced(corners: Array) -> Array:
                 known[point.tobytes()] = _nearest(inner, hull, point)
         near = [known[point.tobytes()] for point in found]
         gaps = np.array([gap for _, gap in near])
-        order = np.argsort(-gaps)[: min(_AT_ONCE, _FACES - len(planes))]
+        # coarsely, by place where equal, so that rounding on another machine changes nothing
+        order = np.lexsort((*np.round(found, 6).T, -np.round(gaps, 7)))[
+            : min(_AT_ONCE, _FACES - len(planes))
+        ]
         order = order[gaps[order] > max(_CLOSE, 0.5 * gaps.max())]
         if not len(order):
             break

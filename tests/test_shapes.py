@@ -470,6 +470,28 @@ def test_a_plan_loads_and_verifies_without_its_mesh_files(arm_plan, tmp_path):
     assert robot["replacements"][0]["excess"] == pytest.approx(0.05 * 0.0086, rel=1e-2)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda replaced: replaced.clear(),
+        lambda replaced: replaced.reverse(),
+        lambda replaced: replaced[0].update(link="base"),
+        lambda replaced: replaced[0].update(excess=0.0),
+        lambda replaced: replaced[0].update(excess="0"),
+        lambda replaced: replaced[0].update(by="capsule"),
+        lambda replaced: replaced[1].pop("by"),
+    ],
+)
+def test_a_plan_file_that_misstates_its_replacements_is_refused(arm_plan, tmp_path, change):
+    from ffsr_plan.plan_file import from_dict, to_dict
+
+    data = to_dict(arm_plan)
+    assert from_dict(data) == arm_plan
+    change(data["problem"]["robot"]["replacements"])
+    with pytest.raises(fp.InvalidInput, match="replacements"):
+        from_dict(data)
+
+
 def test_verification_notices_a_replacement_that_does_not_hold_the_original(arm_plan):
     robot = arm_plan.problem.robot
     for k, who in enumerate(("upper", "hand")):
