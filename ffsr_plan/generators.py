@@ -26,7 +26,7 @@ def cloud(
 
     Args:
         seed: a whole number >= 0.
-        count: number of spheres.
+        count: number of spheres; none make an empty scene.
         low: (3,) least coordinates of the centres [m].
         high: (3,) greatest coordinates of the centres [m].
         radii: (2,) least and greatest radius [m].
@@ -37,7 +37,7 @@ def cloud(
         InvalidInput: an argument that is not allowed, or no room beside what is spared.
     """
     rng = np.random.default_rng(whole_number("cloud seed", seed, at_least=0))
-    count = whole_number("cloud count", count, at_least=1, at_most=1_000_000)
+    count = whole_number("cloud count", count, at_least=0, at_most=1_000_000)
     first = finite_array("cloud low", low, (3,), FARTHEST)
     last = finite_array("cloud high", high, (3,), FARTHEST)
     if not np.all(first < last):
@@ -60,7 +60,8 @@ def cloud(
         centers, sizes = np.vstack([centers, drawn[apart]]), np.append(sizes, radius[apart])
         if len(sizes) == count:
             return Scene(centers, sizes)
-    raise InvalidInput("cloud spared", spared, "balls that leave room for the cloud")
+    kept = "; ".join(f"{room:g} m about ({x:g}, {y:g}, {z:g})" for (x, y, z), room in balls)
+    raise InvalidInput("cloud spared", kept, "balls that leave room for the cloud")
 
 
 def gate(along: float, aside: float, opening: float, radius: float) -> Scene:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from ffsr_plan.axes import Axis, Lattice, PostureAxis
 from ffsr_plan.colony import History, Trails
 from ffsr_plan.errors import FfsrPlanError, InvalidInput
-from ffsr_plan.inputs import finite_array, frozen, number
+from ffsr_plan.inputs import finite_array, frozen, number, truth, whole_number
 from ffsr_plan.planner import PLANNERS
 from ffsr_plan.problem import Problem
 from ffsr_plan.result import Plan
@@ -84,8 +85,13 @@ def _robot_to_dict(robot: SpaceRobot) -> dict[str, Any]:
 
 
 def _robot_from_dict(data: dict[str, Any]) -> SpaceRobot:
-    """The inverse; collision meshes come from the plan, not from their files."""
-    return robot_from_urdf(
+    """The inverse; collision meshes come from the plan, not from their files.
+
+    Raises:
+        InvalidInput: what the plan says of replacements and exempt pairs is not what its URDF, SRDF
+            and meshes give.
+    """
+    robot = robot_from_urdf(
         data["urdf"], data["name"], data["package_dirs"],
         srdf=data["srdf"],
         containers=Containers(**data["containers"]),
@@ -94,6 +100,25 @@ def _robot_from_dict(data: dict[str, Any]) -> SpaceRobot:
             for address, corners in data["meshes"].items()
         },
     )  # fmt: skip
+    remade = _robot_to_dict(robot)
+    if data["disabled_pairs"] != remade["disabled_pairs"]:
+        raise InvalidInput(
+            "disabled_pairs of the plan", data["disabled_pairs"],
+            f"those of its SRDF: {remade['disabled_pairs']}",
+        )  # fmt: skip
+    told, due = data["replacements"], remade["replacements"]
+    if len(told) != len(due) or not all(map(_same_replacement, told, due)):
+        raise InvalidInput("replacements of the plan", told, f"those of its URDF and meshes: {due}")
+    return robot
+
+
+def _same_replacement(told: dict[str, Any], due: dict[str, Any]) -> bool:
+    """Whether two records agree but for rounding, which may also change a number of vertices."""
+    if told.keys() != due.keys() or any(told[k] != due[k] for k in ("link", "number", "shape")):
+        return False
+    kinds = [re.sub(r"\d+", "n", record["by"]) for record in (told, due)]
+    excess = number("excess of the plan's replacements", told["excess"], at_least=0.0)
+    return kinds[0] == kinds[1] and abs(excess - due["excess"]) <= 1e-9 + 1e-6 * due["excess"]
 
 
 def from_dict(data: dict[str, Any]) -> Plan:
@@ -186,6 +211,7 @@ def read(path: Path) -> Plan:
     try:
         plan = from_dict(data)
         _check_shapes(plan)
+        _check_numbers(plan)
         return plan
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
         if isinstance(error, FfsrPlanError):
@@ -207,6 +233,31 @@ def _check_shapes(plan: Plan) -> None:
             raise InvalidInput(f"{name} of the plan", shape, f"the shape {wanted}")
     for name in ("length", "objective", "lattice_objective", "optimum", "seconds"):
         number(f"{name} of the plan", getattr(plan, name), at_least=0.0)
+
+
+def _check_numbers(plan: Plan) -> None:
+    """Raise `InvalidInput` for numbers that no planner gives, and nodes that the lattice lacks."""
+    if plan.seed is not None:
+        whole_number("seed of the plan", plan.seed, at_least=0)
+    truth("interrupted of the plan", plan.interrupted)
+    for name, value in plan.certificate._asdict().items():
+        what = f"certificate of the plan, {name}"
+        if name != "least_clearance":
+            whole_number(what, value, at_least=0)
+        elif value != np.inf:  # an empty scene; the bound may fall short of zero by rounding
+            number(what, value, at_least=-1e-6)
+    lattice = plan.problem.lattice
+    nodes = plan.nodes.reshape(len(plan.nodes), -1)
+    counts = {name: getattr(lattice, name).half_count for name in lattice.axes}
+    known = {name: range(-n, n + 1) for name, n in counts.items()}
+    known |= {f"postures.{k}": axis.indices for k, axis in enumerate(lattice.postures)}
+    known = known or {"no axis": range(1)}
+    for (name, allowed), column in zip(known.items(), nodes.T, strict=True):
+        for node in column.tolist():
+            if node not in allowed:
+                raise InvalidInput(
+                    f"nodes of the plan, {name}", node, f"{allowed[0]} to {allowed[-1]}"
+                )
 
 
 def _digest(data: dict[str, Any]) -> str:

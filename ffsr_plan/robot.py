@@ -284,9 +284,12 @@ def load_robot(
     if srdf is not None and not isinstance(srdf, (str, Path)):
         raise InvalidInput("srdf", srdf, "a path")
     folders = [*(str(Path(p)) for p in package_dirs), str(path.parent)]
+    pairs = "" if srdf is None else _read("srdf", Path(srdf))
+    if srdf is not None and not pairs.strip():
+        raise InvalidInput("srdf", str(srdf), "a file that is not empty")
     return robot_from_urdf(
         _read("robot", path), path.stem, folders,
-        srdf="" if srdf is None else _read("srdf", Path(srdf)),
+        srdf=pairs,
         containers=Containers(meshes, cylinders),
     )  # fmt: skip
 

@@ -242,9 +242,9 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         )
     with _in_table("obstacles"):
         scenes = [Scene([o.center for o in file.obstacles], [o.radius for o in file.obstacles])]
-    with _in_table("clouds"):
-        for table in file.clouds:
-            spared = [(q[:3], table.spared) for q in (start, goal)]
+    for number, table in enumerate(file.clouds):
+        spared = [(q[:3], table.spared) for q in (start, goal)]
+        with _in_table(f"clouds.{number}"):
             scenes.append(cloud(**table.model_dump(exclude={"spared"}), spared=spared))
     scene = Scene(np.vstack([s.centers for s in scenes]), np.hstack([s.radii for s in scenes]))
     axes = {

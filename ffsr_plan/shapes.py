@@ -16,12 +16,17 @@ import coal
 import numpy as np
 import pinocchio as pin
 
+from ffsr_plan.errors import InvalidInput
+from ffsr_plan.hull_reduction import beyond, reduced
 from ffsr_plan.inputs import Array, frozen
 from ffsr_plan.mesh_files import hull, hull_corners
+from ffsr_plan.urdf_check import LARGEST
 
 CONTAINERS = ("hull", "capsule")
 SIDES = 24
 """Of the prism around a cylinder: its corners lie 0.86 % of the radius outside the cylinder."""
+SMALLEST = 1e-4
+"""Least length of a mesh [m]; boxes around smaller ones drown in rounding."""
 _GRAY = np.array([0.9, 0.9, 0.9, 1.0])
 
 
@@ -79,7 +84,7 @@ def collision_geometry(
         meshes: (n, 3) hull corners by address, before scaling; missing ones are read and added.
 
     Raises:
-        InvalidInput: a mesh that is missing, cannot be read, or is flat.
+        InvalidInput: a mesh that is missing, cannot be read, is flat, too small or too large.
     """
     geometry = pin.GeometryModel()
     replacements: list[Replacement] = []
@@ -100,6 +105,7 @@ def collision_geometry(
                     if address not in meshes:
                         meshes[address] = hull_corners(address, folders, about)
                     corners = meshes[address] * _numbers(element, "scale", "1 1 1")
+                    _check_size(corners, about, address)
                     box = _around_points(corners, containers.meshes, about, address)
                     shape = f"mesh {address}"
                 points = box.points @ placement.rotation.T + placement.translation
@@ -174,7 +180,7 @@ def _around_cylinder(element: ElementTree.Element, kind: str) -> _Container:
         corners, triangles = hull(points, "", "cylinder")
         solid = convex(corners, triangles)
         by = f"prism of {SIDES} sides"
-        return _Container(solid, pin.SE3.Identity(), by, outer - radius, corners, 0.0)
+        return _Container(solid, pin.SE3.Identity(), by, float(outer - radius), corners, 0.0)
     # ends g inside the cylinder's: sideways excess sqrt(r^2 + g^2) - r, axial sqrt(r^2 + g^2) - g,
     # the larger of the two least at g = r
     inset = min(radius, 0.5 * length)
@@ -185,20 +191,53 @@ def _around_cylinder(element: ElementTree.Element, kind: str) -> _Container:
     return _Container(solid, pin.SE3.Identity(), "capsule", outer - inset, ends, outer)
 
 
+def _check_size(corners: Array, where: str, address: str) -> None:
+    """Raise `InvalidInput` for a scaled mesh of a size that distances to it are not exact for."""
+    farthest, across = float(np.abs(corners).max()), float(np.ptp(corners, axis=0).max())
+    if not farthest <= LARGEST:
+        allowed = f"coordinates of at most {LARGEST:g} m, scale included"
+        raise InvalidInput(where, f"{address} with {farthest:g} m", allowed)
+    if across < SMALLEST:
+        allowed = f"a mesh of at least {SMALLEST:g} m across, scale included"
+        raise InvalidInput(where, f"{address} of {across:g} m", allowed)
+
+
 def _around_points(points: Array, kind: str, where: str, address: str) -> _Container:
-    """The convex hull, or a capsule along the longest side of the tight box around the points."""
+    """The convex hull, or a capsule along the longest side of the tight box around the points.
+
+    A hull of many corners gives way to a simpler solid around it.
+    """
     from trimesh.bounds import oriented_bounds
 
-    corners, triangles = hull(points, where, address)
-    to_box, _ = oriented_bounds(corners)  # type: ignore[no-untyped-call]
+    corners, _ = hull(points, where, address)
+    around = reduced(corners)
+    simple, triangles = hull(around, where, address)
+    try:
+        to_box, _ = oriented_bounds(simple)  # type: ignore[no-untyped-call]
+    except (TypeError, ValueError):  # where all faces are slivers, it finds no box
+        raise InvalidInput(where, address, "a mesh that is not flat") from None
+    if kind == "capsule":
+        return _capsule_around(corners, to_box)
+    local, turn, middle = _in_box(simple, to_box)
+    by = f"convex hull of {len(corners)} vertices"
+    if around is not corners:
+        by = f"solid of {len(simple)} vertices around the {by}"
+    excess = 0.0 if around is corners else max(0.0, float(beyond(corners, simple).max()))
+    placement = pin.SE3(turn, turn @ middle)
+    return _Container(convex(local, triangles), placement, by, excess, simple, 0.0)
+
+
+def _in_box(corners: Array, to_box: Array) -> tuple[Array, Array, Array]:
+    """Corners about the middle of their box, the box's axes as columns, and its middle there."""
     local = corners @ to_box[:3, :3].T
     middle = 0.5 * (local.min(axis=0) + local.max(axis=0))
     local -= middle  # centred to the last digit: half sides bound the hull on both sides
-    turn = to_box[:3, :3].T
-    placement = pin.SE3(turn, turn @ middle)
-    if kind == "hull":
-        by = f"convex hull of {len(corners)} vertices"
-        return _Container(convex(local, triangles), placement, by, 0.0, corners, 0.0)
+    return local, to_box[:3, :3].T, middle
+
+
+def _capsule_around(corners: Array, to_box: Array) -> _Container:
+    """A capsule that holds all corners, along the longest side of their box."""
+    local, turn, middle = _in_box(corners, to_box)
     longest = int(np.argmax(np.ptp(local, axis=0)))
     along, across = local[:, longest], np.delete(local, longest, axis=1)
     off_axis = np.linalg.norm(across, axis=1)
@@ -208,23 +247,10 @@ def _around_points(points: Array, kind: str, where: str, address: str) -> _Conta
     if low > high:  # one ball would do, anywhere between the two
         low = high = 0.5 * (low + high)
     axis = turn[:, longest]
-    ends = placement.translation + np.outer([low, high], axis)
+    ends = turn @ middle + np.outer([low, high], axis)
     upright = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis).matrix()
     placement = pin.SE3(upright, 0.5 * (ends[0] + ends[1]))
-    excess = max(_beyond(corners, triangles, end, radius) for end in ends)
+    # the distance from a convex solid is a convex function: a capsule is farthest out at an end
+    excess = radius + float(beyond(corners, ends).max())
     solid = coal.Capsule(radius, high - low)
     return _Container(solid, placement, "capsule", excess, frozen(ends), radius)
-
-
-def _beyond(corners: Array, triangles: Array, center: Array, radius: float) -> float:
-    """How far a ball reaches out of a hull [m]: its radius more than its centre does.
-
-    The distance from a convex solid is a convex function, so that a capsule is farthest out at
-    one of its two end balls.
-    """
-    request = coal.DistanceRequest()
-    sharpen(request)
-    solid, ball, place = convex(corners, triangles), coal.Sphere(radius), coal.Transform3s()
-    place.setTranslation(center)
-    gap = coal.distance(solid, coal.Transform3s(), ball, place, request, coal.DistanceResult())
-    return 2.0 * radius + float(gap)

@@ -17,12 +17,17 @@ def disabled_pairs(text: str, where: str, links: Sequence[str]) -> tuple[tuple[s
         links: names of the robot's links.
 
     Raises:
-        InvalidInput: not XML, a document type, or a link that the robot does not have.
+        InvalidInput: not XML, a document type, a URDF, or a link that the robot does not have.
     """
     if not text:
         return ()
-    pairs = set()
-    for element in parse(text, where).findall("disable_collisions"):
+    root, pairs = parse(text, where), set()
+    told = [root.find(tag) is not None for tag in ("link", "disable_collisions", "group_state")]
+    if told == [True, False, False]:
+        raise InvalidInput(
+            where, "a URDF (it has <link> elements)", "an SRDF: disable_collisions, group_state"
+        )
+    for element in root.findall("disable_collisions"):
         pair = [element.get(key) for key in ("link1", "link2")]
         for key, link in zip(("link1", "link2"), pair, strict=True):
             if link not in links:

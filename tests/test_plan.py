@@ -282,6 +282,51 @@ def test_a_malformed_plan_file_is_refused_even_with_a_fitting_digest(fig2a_plan,
         fp.Plan.load(tmp_path / "plan.json")
 
 
+FORGED = [
+    (lambda d: d.update(seed="x"), "seed of the plan: got 'x'"),
+    (lambda d: d.update(seed=-1), "seed of the plan: got -1"),
+    (lambda d: d.update(seed=True), "seed of the plan: got True"),
+    (lambda d: d.update(interrupted="no"), "interrupted of the plan"),
+    (lambda d: d["certificate"].update(edges_free=-1), "edges_free: got -1"),
+    (lambda d: d["certificate"].update(edges_refused=1.5), "edges_refused: got 1.5"),
+    (lambda d: d["certificate"].update(node_queries="3"), "node_queries: got '3'"),
+    (lambda d: d["certificate"].update(edge_queries=-2), "edge_queries: got -2"),
+    (lambda d: d["certificate"].update(least_clearance=-0.5), "least_clearance: got -0.5"),
+    (lambda d: d["nodes"].__setitem__(3, 999), "nodes of the plan, lateral: got 999"),
+    (
+        lambda d: d["problem"]["robot"].update(disabled_pairs=[["base", "left_link_2"]]),
+        "disabled_pairs of the plan.*those of its SRDF",
+    ),
+    (
+        lambda d: d["problem"]["robot"]["replacements"].append({"link": "base"}),
+        "replacements of the plan.*those of its URDF",
+    ),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), FORGED)
+def test_figures_that_no_planner_gives_are_refused_even_with_a_fitting_digest(
+    fig2a_plan, tmp_path, change, message
+):
+    fig2a_plan.save(tmp_path / "plan.json")
+    resigned(tmp_path / "plan.json", change)
+    with pytest.raises(fp.InvalidInput, match=message):
+        fp.Plan.load(tmp_path / "plan.json")
+
+
+@pytest.mark.parametrize("lattice", [fp.Lattice(4), fp.Lattice(4, postures=[
+    fp.PostureAxis({"left_1": 1.0}, 2, 0.1)])])  # fmt: skip
+def test_nodes_lie_within_the_lattice(robot, tmp_path, lattice):
+    goal = robot.configuration((4, 0, 0))
+    plan = fp.plan(fp.Problem(robot, fp.Scene(), robot.neutral(), goal, lattice=lattice))
+    path = tmp_path / "plan.json"
+    plan.save(path)
+    assert fp.Plan.load(path) == plan
+    resigned(path, lambda d: d["nodes"].__setitem__(2, 3))
+    with pytest.raises(fp.InvalidInput, match=r"nodes of the plan.*got 3"):
+        fp.Plan.load(path)
+
+
 @pytest.mark.parametrize(
     "text", ['{"format": "ffsr-plan/2", "a": NaN}', "[" * 100_000, '{"a": ' + "1" * 5001 + "}"]
 )

@@ -103,6 +103,41 @@ MISTAKES = [
 ]
 
 
+CLOUDS = """
+[[clouds]]
+seed = 0
+count = 0
+low = [2, -1, -1]
+high = [3, 1, 1]
+radii = [0.1, 0.1]
+[[clouds]]
+seed = 1
+count = 3
+low = [2, -1, -1]
+high = [3, 1, 1]
+radii = [0.1, 0.1]
+"""
+
+
+def test_clouds_add_up_and_may_be_empty(tmp_path):
+    alone = fp.load_scenario(write(tmp_path, GOOD)).scene
+    assert len(fp.load_scenario(write(tmp_path, GOOD + CLOUDS)).scene) == len(alone) + 3
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ("count = -1", r"clouds\.1: cloud count: got -1"),
+        ("count = 2\nspared = 99.0", r"clouds\.1: cloud spared: got '99 m about \(0, 0, 0\); 99 m"),
+        ("count = 2\nspared = -1.0", r"clouds\.1: cloud spared: got -1"),
+        ("count = 2.5", r"clouds\.1\.count: got 2\.5"),
+    ],
+)
+def test_a_mistake_in_a_cloud_names_the_cloud(tmp_path, wrong, message):
+    with pytest.raises(fp.InvalidInput, match=message):
+        fp.load_scenario(write(tmp_path, GOOD + CLOUDS.replace("count = 3", wrong)))
+
+
 @pytest.mark.parametrize(("right", "wrong", "message"), MISTAKES, ids=[m[1] for m in MISTAKES])
 def test_a_mistake_in_a_scenario_is_named(tmp_path, right, wrong, message):
     assert right in GOOD

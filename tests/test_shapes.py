@@ -177,6 +177,55 @@ def test_the_excess_of_a_fitted_capsule_is_attained(seed):
     assert beyond.max() >= 0.98 * replaced.excess
 
 
+def rounded(seed):
+    """An ellipsoid of 2000 corners, off its frame's origin."""
+    rng = np.random.default_rng(seed)
+    out = rng.normal(size=(2000, 3))
+    out /= np.linalg.norm(out, axis=1)[:, None]
+    return out * rng.uniform(0.02, 0.5, 3) + rng.uniform(-1, 1, 3)
+
+
+MANY = {
+    "tip": lambda: trimesh.creation.cone(0.1, 0.3, sections=255).vertices,
+    "tip of a fine cone": lambda: trimesh.creation.cone(0.1, 0.3, sections=1000).vertices,
+    "flat caps": lambda: trimesh.creation.cylinder(0.1, 0.3, sections=256).vertices,
+    "thin disc": lambda: trimesh.creation.cylinder(0.1, 1e-6, sections=256).vertices,
+    "needle": lambda: trimesh.creation.cylinder(1e-5, 2.0, sections=256).vertices,
+    "round": lambda: trimesh.creation.icosphere(4, 0.2).vertices,
+} | {f"ellipsoid {k}": lambda k=k: rounded(k) for k in range(3)}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("what", MANY)
+def test_a_hull_of_many_vertices_lies_inside_a_simpler_solid_that_exceeds_it_as_stated(what, kind):
+    """Coal crashes where a vertex has 255 neighbours, and thousands of vertices are slow."""
+    points = np.array(MANY[what]())
+    robot = one_link(mesh("kept"), meshes={"kept": points}, containers=Containers(kind))
+    (replaced,) = robot.replacements
+    assert Bodies(robot.urdf, "", robot.replacements).uncovered(robot.meshes) == []
+    assert type(replaced.excess) is float
+    original = Shape("", np.eye(4), points)
+    surface = np.array(replaced.points)
+    if kind == "capsule":
+        out = np.random.default_rng(0).normal(size=(500, 3))
+        out *= replaced.radius / np.linalg.norm(out, axis=1)[:, None]
+        surface = (surface[:, None] + out).reshape(-1, 3)
+    else:
+        assert len(surface) <= 250
+        assert replaced.by.startswith(f"solid of {len(surface)} vertices around the convex hull")
+        assert replaced.excess < 0.021 * np.ptp(points, axis=0).max()
+    beyond = sphere_distance(original, np.eye(4)[None], surface, np.zeros(len(surface)))[0]
+    assert beyond.max() <= replaced.excess + 1e-9
+    assert beyond.max() >= 0.98 * replaced.excess - 1e-8
+
+
+def test_hulls_of_few_vertices_are_taken_as_they_are():
+    points = np.array(trimesh.creation.cone(0.1, 0.3, sections=249).vertices)
+    robot = one_link(mesh("kept"), meshes={"kept": points})
+    assert robot.replacements[0].by == "convex hull of 250 vertices"
+    assert robot.replacements[0].excess == 0.0
+
+
 @given(seeds)
 @settings(max_examples=20)
 def test_hulls_are_centred_in_a_tight_box_of_their_own_frame(seed):
@@ -419,6 +468,28 @@ def test_a_plan_loads_and_verifies_without_its_mesh_files(arm_plan, tmp_path):
     robot = json.loads((tmp_path / "plan.json").read_text())["problem"]["robot"]
     assert [r["shape"] for r in robot["replacements"]] == ["cylinder", "mesh blob.stl"]
     assert robot["replacements"][0]["excess"] == pytest.approx(0.05 * 0.0086, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda replaced: replaced.clear(),
+        lambda replaced: replaced.reverse(),
+        lambda replaced: replaced[0].update(link="base"),
+        lambda replaced: replaced[0].update(excess=0.0),
+        lambda replaced: replaced[0].update(excess="0"),
+        lambda replaced: replaced[0].update(by="capsule"),
+        lambda replaced: replaced[1].pop("by"),
+    ],
+)
+def test_a_plan_file_that_misstates_its_replacements_is_refused(arm_plan, tmp_path, change):
+    from ffsr_plan.plan_file import from_dict, to_dict
+
+    data = to_dict(arm_plan)
+    assert from_dict(data) == arm_plan
+    change(data["problem"]["robot"]["replacements"])
+    with pytest.raises(fp.InvalidInput, match="replacements"):
+        from_dict(data)
 
 
 def test_verification_notices_a_replacement_that_does_not_hold_the_original(arm_plan):

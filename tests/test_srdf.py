@@ -58,11 +58,21 @@ def test_an_unknown_link_is_refused_with_the_nearest_name(robot):
         ("<urdf/>", "<robot> element"),
         ("<robot><disable_collisions link1='a'/></robot>", "link2"),
         (srdf(("a", "a")), "two different links"),
+        (" \n", "well-formed"),
+        (CHAIN, "made, SRDF: got 'a URDF .*allowed: an SRDF"),
     ],
 )
 def test_an_srdf_that_is_not_one_is_refused(text, message):
     with pytest.raises(fp.InvalidInput, match=message):
         robot_from_urdf(CHAIN, "made", srdf=text)
+
+
+@pytest.mark.parametrize("text", ["", " \n"])
+def test_an_empty_srdf_file_is_refused_by_name(tmp_path, text):
+    (tmp_path / "made.urdf").write_text(CHAIN)
+    (tmp_path / "made.srdf").write_text(text)
+    with pytest.raises(fp.InvalidInput, match=r"srdf: got '.*made\.srdf'.*not empty"):
+        fp.load_robot(tmp_path / "made.urdf", srdf=tmp_path / "made.srdf")
 
 
 def test_an_srdf_is_read_from_its_file_and_kept_in_the_plan(tmp_path):
