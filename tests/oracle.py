@@ -19,6 +19,8 @@ from numba import njit
 
 from ffsr_plan.posture_lattice import PostureLattice
 
+HALF_DEGREE = math.radians(0.5)
+
 
 class Oracle(NamedTuple):
     """Least joint path from the undisplaced posture back to it, by yaw bin."""
@@ -28,7 +30,7 @@ class Oracle(NamedTuple):
     yaws: np.ndarray
     """(bins,) yaw reached [rad]."""
 
-    def least(self, yaw, within=math.radians(0.5)):
+    def least(self, yaw, within=HALF_DEGREE):
         """L [m] of the shortest path whose yaw is within `within` of `yaw` [rad]."""
         fits = np.abs(self.yaws - yaw) <= within
         return float(np.min(self.lengths[fits], initial=np.inf))
@@ -39,7 +41,7 @@ class Oracle(NamedTuple):
         return float(np.max(np.abs(self.yaws[np.isfinite(self.lengths)])))
 
 
-def turning_oracle(problem, bin_width=math.radians(0.25), most=math.radians(120.0)):
+def turning_oracle(problem, bin_width=HALF_DEGREE / 2, most=240 * HALF_DEGREE):
     """The oracle of a planar problem without obstacles, whose nominal joints do not move.
 
     Args:
@@ -48,7 +50,9 @@ def turning_oracle(problem, bin_width=math.radians(0.25), most=math.radians(120.
         most: yaws beyond this are given up [rad].
     """
     lattice = PostureLattice(problem)
-    assert lattice.alike and not len(problem.scene) and problem.delta_d == 0.0
+    assert lattice.alike
+    assert not len(problem.scene)
+    assert problem.delta_d == 0.0
     turns, allowed = lattice.turns[0], lattice.allowed[0]
     assert not np.any(turns[..., :2]), "only for robots that turn in their plane"
     lengths, yaws = _programme(
@@ -79,7 +83,7 @@ def _programme(yaw_steps, lengths, successors, layers, origin, width, half):
                     if on < 0:
                         continue
                     turned = yaw[p, k] + yaw_steps[p, step]
-                    b = int(round(turned / width)) + half
+                    b = math.floor(turned / width + 0.5) + half
                     total = cost[p, k] + lengths[p, step]
                     if 0 <= b <= 2 * half and total < new_cost[on, b]:
                         new_cost[on, b], new_yaw[on, b] = total, turned
