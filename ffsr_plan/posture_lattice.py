@@ -97,12 +97,17 @@ class PostureLattice:
         nominal = self.base.nominal
         still = IDENTITY if nominal.reacts else attitude.exp(nominal.turn)
         found = np.tile(still, (layers, n, k, 1))
-        there = np.broadcast_to(self.successors >= 0, (layers, n, k))
+        there = np.tile(self.successors >= 0, (layers, 1, 1))
         if nominal.reacts and self.problem.robot.nd:
+            if self.alike:  # the way back, at k - 1 - step, undoes what the way there does
+                there &= np.arange(k) > k // 2
             i, p, step = np.nonzero(there)
-            begin = self.joint_values[i, p]
-            steps = self.joint_values[i + 1, self.successors[p, step]] - begin
-            found[i, p, step] = Reaction.of_segments(self.problem.robot, begin, steps).increments
+            begin, on = self.joint_values[i, p], self.successors[p, step]
+            steps = self.joint_values[i + 1, on] - begin
+            turned = Reaction.of_segments(self.problem.robot, begin, steps).increments
+            found[i, p, step] = turned
+            if self.alike:
+                found[i, on, k - 1 - step] = attitude.inverse(turned)
         return np.broadcast_to(found, (m, n, k, 4))
 
     @cached_property

@@ -26,8 +26,10 @@ _PERSISTENCE, _LEAST = 0.9, 0.02
 _SHIFTS = 200  # tried on the best ant of a cycle
 _PATIENCE = 30  # cycles without improvement that end the walking
 _ANNEALING = 1000  # shifts for each layer in an annealing
-_HEATS = (1.0, 0.3, 0.1)  # metres, of the annealings that end the search
 _COLD = 1e-3
+_HEATS = ((1.0, 0.03), (1.0, 0.03), (1.0, 0.03), (0.2, _COLD))
+"""Temperatures [m] between which the annealings that end the search cool. How often the arms loop
+is settled hot, and differs from one annealing to the next; the last one polishes."""
 _MISSED = np.array([5.0, 100.0])  # metres of cost for a radian of attitude missed, early and late
 
 
@@ -129,8 +131,8 @@ def search(
                 interrupted = True
                 break
         if not interrupted:
-            for hot in _HEATS:
-                found, cost = annealed(ground, rng, best, _ANNEALING * m, hot)
+            for heats in _HEATS:
+                found, cost = annealed(ground, rng, best, _ANNEALING * m, *heats)
                 if cost < best_cost - 1e-9:
                     best, best_cost = found, cost
                 records.append((best_cost, cost, cost, 1))
@@ -152,12 +154,17 @@ def _descended(ground: Ground, rng: np.random.Generator, path: Path) -> tuple[Pa
 
 
 def annealed(
-    ground: Ground, rng: np.random.Generator, path: Path, shifts: int, hot: float
+    ground: Ground,
+    rng: np.random.Generator,
+    path: Path,
+    shifts: int,
+    hot: float,
+    cold: float = _COLD,
 ) -> tuple[Path, float]:
     """The best path that annealing from `path` comes across, and its cost [m]."""
     found = (np.empty_like(path[0]), np.empty_like(path[1]))
     offsets, postures = path[0].copy(), path[1].copy()
-    cost = call(anneal, ground, rng, offsets, postures, shifts, hot, _COLD, _MISSED, *found)
+    cost = call(anneal, ground, rng, offsets, postures, shifts, hot, cold, _MISSED, *found)
     return found, float(cost)
 
 

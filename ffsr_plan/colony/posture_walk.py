@@ -133,7 +133,7 @@ def anneal(
     best_offsets: IntArray,
     best_postures: IntArray,
 ) -> float:
-    """Shift whole segments of a path by one, along an axis, while the temperature falls.
+    """Shift whole segments of a path by one, along an axis or in time, as the temperature falls.
 
     Args:
         ground: the lattice.
@@ -172,7 +172,7 @@ def anneal(
         length = int(math.exp(rng.random() * math.log(m)))
         first = 1 + int(rng.random() * (m - 1))
         last = min(first + length, m)
-        kind = int(rng.random() * (2 * axes + beside))
+        kind = int(rng.random() * (2 * axes + beside + 2))
         new_offsets[:], new_postures[:] = offsets, postures
         possible = True
         if kind < 2 * axes:
@@ -183,10 +183,14 @@ def anneal(
             for i in range(first, last):
                 new_postures[i] = ground.successors[postures[i], step]
                 possible &= new_postures[i] >= 0
-        else:
+        elif kind < 2 * axes + beside:
             for i in range(first, last):
                 new_offsets[i] = ground.neighbours[offsets[i], kind - 2 * axes]
                 possible &= new_offsets[i] >= 0
+        else:  # a layer later or earlier: room for a step here is taken from there
+            when = -1 if kind == 2 * axes + beside else 1
+            for i in range(first, last):
+                new_offsets[i], new_postures[i] = offsets[i + when], postures[i + when]
         if not possible:
             continue
         limit = now - heat * math.log(1.0 - rng.random())
