@@ -110,15 +110,17 @@ class AttitudeOutOfReach(PlanningError):  # noqa: N818 - so are the names of its
     Attributes:
         wanted: angle from the start's to the goal's attitude [rad].
         missed: angle from the attitude reached to the goal's [rad].
+        turned: how much of the way to the goal's attitude the arms were found to go [rad].
     """
 
     def __init__(self, wanted: float, missed: float) -> None:
         self.wanted = wanted
         self.missed = missed
+        self.turned = max(0.0, wanted - missed)
         super().__init__(
-            f"goal attitude out of reach: of {math.degrees(wanted):.1f} degrees the arms leave "
-            f"{math.degrees(missed):.1f} degrees; more divisions, wider or other posture axes may "
-            "turn the base farther"
+            f"goal attitude out of reach: the arms were found to turn the base by "
+            f"{math.degrees(self.turned):.1f} of {math.degrees(wanted):.1f} degrees; more "
+            "divisions, wider or other posture axes may turn it farther"
         )
 
     def __reduce__(self) -> tuple[type, tuple[float, float]]:
