@@ -13,9 +13,9 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: one thread a worker
 from scenes import RESULTS, publish, table
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # for the workers
 sys.path.append(str(Path(__file__).parent.parent / "tests"))
 from grazing import Counts, look_at
 
