@@ -46,9 +46,9 @@ def main() -> None:
     ]
     publish(
         f"# Looking for false proofs\n\n`python benchmarks/soundness.py --edges {args.edges} "
-        f"--first-seed {args.first_seed}`\n\nRandom trees of boxes, balls, capsules and, in every tenth, cylinders "
-        "(inside prisms), revolute, continuous and\nprismatic joints, all "
-        "modes, joint steps up to a radian and more; obstacles that the motion grazes.\n"
+        f"--first-seed {args.first_seed}`\n\nRandom trees of boxes, balls, capsules "
+        "and, in every tenth, cylinders (inside prisms), revolute, continuous and\nprismatic "
+        "joints, all modes, joint steps up to a radian and more; obstacles that it grazes.\n"
         f"{seed - args.first_seed} motions, {minutes:.0f} minutes.\n\n"
         + table(["edges", "number"], rows)
         + "\n",
