@@ -57,7 +57,8 @@ def certify(edge: Edge, ends: tuple[float, float], tolerance: float) -> Verdict:
     """Prove that an edge keeps clear, or find where it does not.
 
     Touching counts as blocked. An edge is refused only where its clearance is at most `tolerance`
-    somewhere; with more than that all along, it is always proven free.
+    somewhere (or the edge's margin for rounding, where that is more); with more than that all
+    along, it is always proven free.
 
     Args:
         edge: the edge.

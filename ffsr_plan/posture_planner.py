@@ -70,8 +70,8 @@ def plan_postures(
         if problem.mode != "attitude-held":
             reason = (
                 "with posture axes the attitude at a node depends on the way there, so that no "
+                "search over nodes alone is exact"
             )
-            reason += "search over nodes alone is exact"
         raise InvalidInput("planner", planner.name, f"{MaxMinAntSystem.name}: {reason}")
     from ffsr_plan.colony import posture_colony as colony
 
