@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan import attitude
-from ffsr_plan.inputs import Array
+from ffsr_plan.inputs import Array, Flags
 from ffsr_plan.reaction import Reaction
 from ffsr_plan.robot import SpaceRobot
 
@@ -20,7 +20,12 @@ _CLOSE = 1e-7  # radians
 
 
 def corrected(
-    robot: SpaceRobot, start: Array, goal: Array, joint_values: Array, directions: Array
+    robot: SpaceRobot,
+    start: Array,
+    goal: Array,
+    joint_values: Array,
+    directions: Array,
+    held: Flags | None = None,
 ) -> Array | None:
     """Joint values (m + 1, nd) whose reaction ends at the goal attitude; None if none was found.
 
@@ -30,8 +35,12 @@ def corrected(
         goal: (4,) attitude to end with.
         joint_values: (m + 1, nd) corners of a path that ends near it.
         directions: (m + 1, axes, nd) along which each corner may be displaced.
+        held: (m + 1,) corners that are to stay where they are; the first and the last do anyway.
     """
     path = np.array(joint_values)
+    free = np.ones(directions[1:-1].shape[:2], dtype=np.bool_)
+    if held is not None:
+        free[held[1:-1]] = False
     for _ in range(_ROUNDS):
         increments = Reaction(robot, path).increments
         chain = [start]
@@ -41,10 +50,30 @@ def corrected(
         if np.linalg.norm(missed) < _CLOSE:
             return path
         slope = _slopes(robot, path, directions, increments)
-        change = np.linalg.lstsq(slope, missed, rcond=None)[0].reshape(directions[1:-1].shape[:2])
-        path[1:-1] += np.einsum("ka,kai->ki", change, directions[1:-1])
-        if np.any((path < robot.lower) | (path > robot.upper)):
+        inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, missed, free)
+        if inner is None:
             return None
+        path[1:-1] = inner
+    return None
+
+
+def _within_limits(
+    robot: SpaceRobot, corners: Array, directions: Array, slope: Array, missed: Array, free: Flags
+) -> Array | None:
+    """The corners (m - 1, nd) after the least displacement that keeps every joint's limits.
+
+    A corner that would pass a limit along an axis is held back there, and the others do its share.
+    """
+    free = free.copy()
+    while free.any():
+        change = np.linalg.lstsq(slope * free.ravel(), missed, rcond=None)[0].reshape(free.shape)
+        moves = change[..., None] * directions
+        moved = corners + np.sum(moves, axis=1)
+        above, below = moved > robot.upper, moved < robot.lower
+        if not np.any(above | below):
+            return np.asarray(moved)
+        blocked = (above[:, None] & (moves > 0.0)) | (below[:, None] & (moves < 0.0))
+        free &= ~np.any(blocked, axis=2)
     return None
 
 

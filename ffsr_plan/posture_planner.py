@@ -35,6 +35,7 @@ from ffsr_plan.roadmap import Certificate
 REACHED = math.radians(1.0)
 """Error of the goal attitude that a plan may be left with where the last bend is not possible."""
 _ATTEMPTS = 25
+_BENDS = 6  # attempts at the last bend, each holding what the one before could not prove
 _COOL = 0.05  # temperature [m] at which the search goes on behind a refused edge
 
 
@@ -95,10 +96,8 @@ def plan_postures(
     _raise_unless_it_holds(problem, candidate)
     lattice_objective = _objective(lattice, candidate)
     if problem.reach_attitude:
-        bent = _bent(lattice, candidate)
-        if bent is not None:
-            queries += bent.prover.queries
-            candidate = bent
+        candidate, spent = _bent(lattice, candidate)
+        queries += spent
     motion, still = candidate.motion, np.zeros((problem.lattice.divisions + 1, 3))
     before = candidate.prover.queries
     least = candidate.prover.least_clearance(still, candidate.clearances)
@@ -164,17 +163,29 @@ def _proven(lattice: PostureLattice, positions: Array, joints: Array) -> _Candid
     return _Candidate(motion, prover, clearances, refused, missed)
 
 
-def _bent(lattice: PostureLattice, candidate: _Candidate) -> _Candidate | None:
-    """The candidate with the rest of its attitude error closed, if that can be proven free."""
+def _bent(lattice: PostureLattice, candidate: _Candidate) -> tuple[_Candidate, int]:
+    """The candidate, its attitude error closed if that can be proven free; queries it took.
+
+    Where the bent path is refused, the corners beside are left as they were, and others bent.
+    """
     problem, motion = lattice.problem, candidate.motion
     directions = displacements(problem, lattice.base.nominal.joint_values)
-    joints = corrected(
-        problem.robot, problem.start[3:7], problem.goal[3:7], motion.joint_values, directions
-    )
-    if joints is None:
-        return None
-    bent = _proven(lattice, motion.positions, joints)
-    return bent if bent.holds and bent.missed < candidate.missed else None
+    held = np.zeros(len(motion.positions), dtype=np.bool_)
+    queries = 0
+    for _ in range(_BENDS):
+        joints = corrected(
+            problem.robot, problem.start[3:7], problem.goal[3:7], motion.joint_values, directions,
+            held,
+        )  # fmt: skip
+        if joints is None:
+            break
+        bent = _proven(lattice, motion.positions, joints)
+        queries += bent.prover.queries
+        if bent.holds and bent.missed < candidate.missed:
+            return bent, queries
+        for layer, *_ in bent.refused:  # there the path as it was has been proven
+            held[max(layer - 1, 0) : layer + 3] = True
+    return candidate, queries
 
 
 def _check_start(problem: Problem) -> None:

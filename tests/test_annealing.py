@@ -104,3 +104,9 @@ def test_a_refused_edge_is_not_taken_again():
     found, cost = colony.annealed(barred, np.random.default_rng(4), aside, 3000, 0.5)
     assert cost < np.inf
     assert not np.array_equal(found[layer : layer + 2], path[layer : layer + 2])
+
+
+def test_what_the_search_counts_is_the_objective_of_what_it_returns():
+    plan = fp.plan(fp.load_scenario("gate"), fp.MaxMinAntSystem(ants=5, cycles=5), seed=0)
+    assert plan.certificate.edges_refused == 0  # else the last search is not in the history
+    assert plan.history.best[-1] == pytest.approx(plan.lattice_objective, rel=1e-9)

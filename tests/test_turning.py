@@ -182,10 +182,28 @@ def test_the_correction_closes_a_missed_attitude_and_keeps_the_ends():
     reached = Reaction(robot, bent).attitudes(start)[-1]
     assert attitude.angle_between(reached, goal) < 1e-6
     assert np.array_equal(bent[[0, -1]], path[[0, -1]])
+
+
+def test_the_correction_keeps_limits_and_held_corners_and_bends_the_others():
+    motion = quick().motion
+    robot, path = motion.robot, motion.joint_values
+    directions = displacements(quick().problem, np.tile(path[0], (len(path), 1)))
+    start, goal = attitude.IDENTITY, attitude.from_angles((math.radians(20.7), 0.0, 0.0))
+    free = corrected(robot, start, goal, path, directions)
+    assert np.any((free > path.max(axis=0) + 1e-4) | (free < path.min(axis=0) - 1e-4))
     tight = replace(robot)
     object.__setattr__(tight, "upper", path.max(axis=0))
     object.__setattr__(tight, "lower", path.min(axis=0))
-    assert corrected(tight, start, goal, path, directions) is None
+    held = np.arange(len(path)) < len(path) // 2
+    for bent in (
+        corrected(tight, start, goal, path, directions),
+        corrected(tight, start, goal, path, directions, held),
+    ):
+        reached = Reaction(robot, bent).attitudes(start)[-1]
+        assert attitude.angle_between(reached, goal) < 1e-6
+        assert np.all((bent <= tight.upper) & (bent >= tight.lower))
+    assert np.array_equal(bent[held], path[held])
+    assert corrected(tight, start, goal, path, directions, np.ones_like(held)) is None
 
 
 def test_slopes_of_the_correction_equal_finite_differences():

@@ -25,11 +25,11 @@ _KEEN = 0.15  # metres of detour that an ant takes e times less often
 _PERSISTENCE, _LEAST = 0.9, 0.02
 _SHIFTS = 200  # tried on the best ant of a cycle
 _PATIENCE = 30  # cycles without improvement that end the walking
-_ANNEALING = 1000  # shifts for each layer in an annealing
+_ANNEALING = 3000  # shifts for each layer in an annealing
 _COLD = 1e-3
-_HEATS = ((1.0, 0.03), (1.0, 0.03), (1.0, 0.03), (0.2, _COLD))
-"""Temperatures [m] between which the annealings that end the search cool. How often the arms loop
-is settled hot, and differs from one annealing to the next; the last one polishes."""
+_HEATS = ((1.0, 0.03), (1.0, _COLD), (0.3, _COLD))
+"""Temperatures [m] between which the annealings that end the search cool. Whether and how often the
+arms loop is settled hot, where the first one stays; the cooler ones polish."""
 _MISSED = np.array([5.0, 100.0])  # metres of cost for a radian of attitude missed, early and late
 
 
