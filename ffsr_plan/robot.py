@@ -387,3 +387,7 @@ def _check_loaded(
         raise InvalidInput(
             f"{name}, root link", f"mass {base.mass:g} kg", "a mass and a full inertia"
         )
+    for frame in model.frames:  # a joint's inertia is that of all links fixed to one another
+        if frame.type == pin.FrameType.BODY and model.inertias[frame.parentJoint].mass <= 0.0:
+            allowed = "a mass for what moves, the link's own or of a link fixed to it"
+            raise InvalidInput(f"{name}, link '{frame.name}'", "0 kg", allowed)
