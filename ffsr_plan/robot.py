@@ -231,6 +231,24 @@ class SpaceRobot:
                     f"{self.lower[k]:g} to {self.upper[k]:g}",
                 )
 
+    def save(self, path: str | Path) -> None:
+        """Write `urdf` to a `.urdf` file and the SRDF, if there is one, to a `.srdf` beside it.
+
+        Files of the same names are replaced. Meshes that the URDF names are not copied.
+
+        Raises:
+            InvalidInput: not a `.urdf` path, or one that cannot be written.
+        """
+        target = Path(path)
+        if target.suffix != ".urdf":
+            raise InvalidInput("path", str(path), "a path that ends in .urdf")
+        try:
+            target.write_text(self.urdf, encoding="utf-8")
+            if self.srdf:
+                target.with_suffix(".srdf").write_text(self.srdf, encoding="utf-8")
+        except OSError as error:
+            raise InvalidInput("path", str(path), f"a file to be written ({error})") from None
+
     def link_of(self, geometry: pin.GeometryObject) -> str:
         """Name of the URDF link that a collision or visual shape belongs to."""
         return str(self.model.frames[geometry.parentFrame].name)
