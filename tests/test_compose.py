@@ -200,6 +200,24 @@ def test_mujoco_compiles_the_same_robot_from_the_file(case, saved, seed):
             close(axes @ np.diag(model.body_inertia[k]) @ axes.T, tensor)
 
 
+def test_mujoco_makes_up_no_mass_for_shapes_of_links_without(tmp_path):
+    mujoco = pytest.importorskip("mujoco", minversion="4.0")
+    path = tmp_path / "arm.urdf"
+    path.write_text(
+        urdf(
+            link("a", sphere(0.1)),
+            link("b", inertial(1.0, (0.1, 0.1, 0.1))),
+            link("tool", box((0.1, 0.1, 0.1))),
+            joint("j", "revolute", "a", "b", (0, 0, 1)),
+            joint("k", "fixed", "b", "tool", (0, 0, 1)),
+        )
+    )
+    fp.compose(fp.Bus((1, 1, 1), 10.0), [fp.Mount(path)]).save(tmp_path / "made.urdf")
+    spec = mujoco.MjSpec.from_file(str(tmp_path / "made.urdf"))
+    spec.worldbody.first_body().add_freejoint()
+    close(spec.compile().body_mass.sum(), 11.0)
+
+
 def test_the_saved_robot_loads_again_as_the_same_robot(case, saved):
     _, robot = case
     srdf = saved.with_suffix(".srdf")
@@ -210,16 +228,30 @@ def test_the_saved_robot_loads_again_as_the_same_robot(case, saved):
     assert again.postures == robot.postures
 
 
-def test_the_connection_of_a_composed_robot_keeps_the_angular_momentum_zero(case):
+def test_the_connection_of_a_composed_robot_keeps_the_engines_angular_momentum_zero(case):
+    mujoco = pytest.importorskip("mujoco", minversion="4.0")
+    from flight import mujoco_model
+
     _, robot = case
-    q = robot.configuration(attitude=(0.3, 0.2, 0.1), joints=draw(robot, 6))
-    rates = np.random.default_rng(6).normal(size=robot.nd)
-    omega = fp.momentum.connection(robot, q) @ rates
-    data = robot.model.createData()
-    velocity = np.concatenate([np.zeros(3), omega, rates])
-    pin.computeCentroidalMomentum(robot.model, data, q, velocity)
-    close(data.hg.angular, np.zeros(3), 1e-9 * np.linalg.norm(rates))
-    assert np.linalg.norm(omega) > 1e-3
+    values, rng = draw(robot, 6), np.random.default_rng(6)
+    q = robot.configuration(joints=values)
+    rates = dict(zip(robot.joint_names, rng.normal(size=robot.nd).tolist(), strict=True))
+    omega = fp.momentum.connection(robot, q) @ list(rates.values())
+    model = mujoco_model(robot)
+    data = mujoco.MjData(model)
+    data.qvel[3:6] = omega
+    for name, value in values.items():
+        data.qpos[model.joint(name).qposadr[0]] = value
+        data.qvel[model.joint(name).dofadr[0]] = rates[name]
+    mujoco.mj_forward(model, data)
+    mujoco.mj_subtreeVel(model, data)
+    data.qvel[3:6] = 0.0
+    reacting = np.array(data.subtree_angmom[1])
+    mujoco.mj_forward(model, data)
+    mujoco.mj_subtreeVel(model, data)
+    still = np.linalg.norm(data.subtree_angmom[1])
+    assert still > 0.1
+    close(reacting / still, np.zeros(3))
 
 
 def test_every_known_arm_can_be_mounted():
@@ -426,7 +458,7 @@ def test_robots_are_saved_only_as_urdf_files_that_can_be_written(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_plan_of_a_composed_satellite_verifies():
+def test_a_plan_of_a_composed_satellite_verifies_and_is_kept_whole(tmp_path):
     robot = fp.compose(
         fp.Bus((0.6, 0.6, 0.6), 40.0),
         [fp.Mount("z1", (0.3, 0.0, 0.0), (0.0, np.pi / 2, 0.0), locked={"jointGripper": -0.5})],
@@ -441,3 +473,5 @@ def test_a_plan_of_a_composed_satellite_verifies():
     plan = fp.plan(problem, seed=0)
     assert plan.verify(200).ok
     assert np.linalg.norm(plan.arrival_attitude) > 1e-3
+    plan.save(tmp_path / "plan.json")
+    assert fp.Plan.load(tmp_path / "plan.json").problem.robot.urdf == robot.urdf
