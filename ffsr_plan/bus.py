@@ -162,7 +162,10 @@ def _box_inertia(mass: float, size: ArrayLike) -> Array:
 
 def _inertia(what: str, value: ArrayLike) -> Array:
     """(3, 3), if it is that of a body with mass in all three directions."""
-    flat = np.ndim(value) == 1
+    try:
+        flat = np.ndim(value) == 1
+    except ValueError:  # rows of different lengths
+        flat = False
     checked = finite_array(what, value, (3,) if flat else (3, 3))
     tensor = np.diag(checked) if flat else checked
     if not np.array_equal(tensor, tensor.T):
