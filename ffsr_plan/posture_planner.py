@@ -81,15 +81,14 @@ def plan_postures(
     found = colony.search(
         lattice, ground, planner.ants, planner.cycles, planner.pheromone, rng, watch
     )
-    path: tuple[IntArray, IntArray] = (found.offsets, found.postures)
-    queries, barred = 0, 0
+    path, queries, barred = found.path, 0, 0
     for _ in range(_ATTEMPTS):
-        candidate = _worked_out(lattice, *path)
+        candidate = _worked_out(lattice, path)
         queries += candidate.prover.queries
         if candidate.holds or found.interrupted:
             break
         for layer, *_ in candidate.refused:
-            ground = colony.bar(ground, layer, *path)
+            ground = colony.bar(ground, layer, path)
             barred += 1
         shifts = 500 * problem.lattice.divisions
         path, _ = colony.annealed(ground, rng, path, shifts, _COOL)
@@ -104,7 +103,7 @@ def plan_postures(
     before = candidate.prover.queries
     least = candidate.prover.least_clearance(still, candidate.clearances)
     queries += candidate.prover.queries - before
-    nodes = np.hstack([lattice.base.indices[path[0]], lattice.indices[path[1]]])
+    nodes = np.hstack([lattice.base.indices[path[:, 0]], lattice.indices[path[:, 1]]])
     value = _objective(lattice, candidate)
     unit, history = problem.length_unit, found.history
     return Plan(
@@ -136,11 +135,10 @@ def plan_postures(
     )
 
 
-def _worked_out(lattice: PostureLattice, offsets: IntArray, postures: IntArray) -> _Candidate:
-    """The motion along a path of nodes, with Coal's clearances and what could not be proven."""
-    layers, base = np.arange(len(offsets)), lattice.base
-    joints = lattice.joint_values[layers, postures]
-    return _proven(lattice, base.nominal.positions + base.offsets[offsets], joints)
+def _worked_out(lattice: PostureLattice, path: IntArray) -> _Candidate:
+    """The motion along a path (m + 1, 2), with Coal's clearances and what could not be proven."""
+    base, joints = lattice.base, lattice.joint_values[np.arange(len(path)), path[:, 1]]
+    return _proven(lattice, base.nominal.positions + base.offsets[path[:, 0]], joints)
 
 
 def _proven(lattice: PostureLattice, positions: Array, joints: Array) -> _Candidate:

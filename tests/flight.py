@@ -22,6 +22,8 @@ from ffsr_plan import attitude
 _STIFFNESS = 5.0  # [1/s], of the critically damped servos
 _THRUSTERS_STIFFNESS = 30.0  # the base's path has corners
 _PUSHED = {"free-floating": 0, "free-flying": 3, "attitude-held": 6}
+_LAW = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6])  # s from rest to rest, time from 0 to 1
+_SPEED, _ACCELERATION = _LAW.deriv(1), _LAW.deriv(2)
 
 
 class Course(NamedTuple):
@@ -50,6 +52,43 @@ class Flight(NamedTuple):
     """(N, 3) angular momentum of base and arms about the centre of mass, world axes [N m s]."""
     impulses: np.ndarray
     """(N, 3) integral of the wheels' moment on the base, world axes [N m s]."""
+
+
+def progress(times, duration, parts=1):
+    """Path parameter s in [0, 1] at `times` [s], its rate and its acceleration.
+
+    Each of so many equal parts of the path is flown from rest to rest in the same time.
+    """
+    u = np.clip(np.asarray(times) / duration, 0.0, 1.0) * parts
+    part = np.minimum(np.floor(u), parts - 1)
+    u = u - part
+    s = np.clip((part + _LAW(u)) / parts, 0.0, 1.0)
+    return s, _SPEED(u) / duration, _ACCELERATION(u) * parts / duration**2
+
+
+def course_of(plan, duration, parts=1):
+    """What a plan asks for: base path and joints, straight from corner to corner.
+
+    A joint path with corners is followed exactly if it is flown from rest to rest on every edge,
+    `parts` being their number. Wheels turn the base steadily from the start to the goal.
+    """
+    corners = np.hstack([plan.motion.positions, plan.motion.joint_values])
+    edges, start = len(corners) - 1, plan.problem.start[3:7]
+    whole = attitude.log(attitude.multiply(attitude.inverse(start), plan.problem.goal[3:7]))
+
+    def course(t):
+        s, speed, acceleration = progress(t, duration, parts)
+        k = min(int(s * edges), edges - 1)
+        way = (corners[k + 1] - corners[k]) * edges
+        place = corners[k] + (s - k / edges) * way
+        turned = attitude.multiply(start, attitude.exp(s * whole))
+        return Course(
+            (place[:3], speed * way[:3], acceleration * way[:3]),
+            (turned, speed * whole, acceleration * whole),
+            (place[3:], speed * way[3:], acceleration * way[3:]),
+        )
+
+    return course
 
 
 def mujoco_model(robot):

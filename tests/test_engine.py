@@ -17,7 +17,6 @@ AGREEMENT = 1e-5  # [rad], [m] and relative, where the laws of motion decide
 FOLLOWED = 1e-3  # [m], thrusters cut the path's corners
 DURATION = 100.0  # [s]
 SPATIAL = (7, 39)  # random robots with hinges and slides
-LAW = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6])  # s of time / duration
 MODES = ("free-flying", "attitude-held")
 
 
@@ -49,27 +48,6 @@ def plans():
             )  # fmt: skip
             found[mode, seed] = fp.plan(problem, fp.AntSystem(ants=5, cycles=3), seed)
     return found
-
-
-def course_of(plan, duration=DURATION):
-    """The plan, flown by `LAW`."""
-    laws = (LAW, LAW.deriv(1) / duration, LAW.deriv(2) / duration**2)
-    q, edges = plan.configurations, plan.problem.lattice.divisions
-    begin, travel = plan.motion.joint_values[0], np.diff(plan.motion.joint_values[[0, -1]], axis=0)
-    turn = attitude.log(attitude.multiply(attitude.inverse(q[0, 3:7]), q[-1, 3:7]))
-
-    def course(t):
-        s, speed, acceleration = (float(f(min(t / duration, 1.0))) for f in laws)
-        k = min(int(s * edges), edges - 1)
-        way = (q[k + 1, :3] - q[k, :3]) * edges
-        quat = attitude.multiply(q[0, 3:7], attitude.exp(s * turn))
-        return engine.Course(
-            (q[k, :3] + (s - k / edges) * way, speed * way, acceleration * way),
-            (quat, speed * turn, acceleration * turn),
-            (begin + s * travel[0], speed * travel[0], acceleration * travel[0]),
-        )
-
-    return course
 
 
 @pytest.mark.parametrize("name", ["planar_dual_arm", *SPATIAL, 9, 12])
@@ -104,10 +82,10 @@ def test_the_engine_and_pinocchio_have_the_same_bodies(name):
 @pytest.mark.parametrize("name", ["planar_dual_arm", *SPATIAL])
 def test_a_free_flying_plan_flown_by_the_engine_turns_its_base_as_planned(plans, name):
     plan = plans["free-flying", name]
-    robot, course = plan.problem.robot, course_of(plan)
-    flight = engine.fly(robot, "free-flying", course, DURATION)
+    robot = plan.problem.robot
+    flight = engine.fly(robot, "free-flying", engine.course_of(plan, DURATION), DURATION)
     reaction = Reaction(robot, flight.joints).attitudes(flight.attitudes[0])
-    planned = plan.at(np.clip(LAW(flight.times / DURATION), 0.0, 1.0))
+    planned = plan.at(engine.progress(flight.times, DURATION)[0])
     turned = attitude.angle_between(reaction[0], reaction).max()
     off = attitude.angle_between(flight.attitudes, reaction).max()
     off_plan = attitude.angle_between(flight.attitudes, planned[:, 3:7]).max()
@@ -122,7 +100,8 @@ def test_a_free_flying_plan_flown_by_the_engine_turns_its_base_as_planned(plans,
 @pytest.mark.parametrize("name", ["planar_dual_arm", *SPATIAL])
 def test_the_engines_wheels_store_what_the_plan_says(plans, name):
     plan = plans["attitude-held", name]
-    flight = engine.fly(plan.problem.robot, "attitude-held", course_of(plan), DURATION)
+    course = engine.course_of(plan, DURATION)
+    flight = engine.fly(plan.problem.robot, "attitude-held", course, DURATION)
     wheels = plan.wheel_momentum(DURATION, np.minimum(flight.times, DURATION))
     planned = plan.at(wheels.parameters)
     held = attitude.angle_between(flight.attitudes, planned[:, 3:7]).max()

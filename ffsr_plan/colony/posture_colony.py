@@ -8,14 +8,14 @@ that it really leads to.
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ffsr_plan.attitude import rotate, slerp
-from ffsr_plan.colony.posture_cost import Ground, path_cost, step_between
-from ffsr_plan.colony.posture_walk import anneal, cost_to_go, deposit, walk
+from ffsr_plan.colony.posture_annealing import anneal, blank_course
+from ffsr_plan.colony.posture_cost import Ground, Obstacles, path_cost
+from ffsr_plan.colony.posture_walk import cost_to_go, deposit, walk
 from ffsr_plan.colony.records import Cycle, History, Watch
 from ffsr_plan.compiling import call
 from ffsr_plan.inputs import Array, IntArray, frozen
@@ -33,17 +33,11 @@ is settled hot, and differs from one annealing to the next; the last one polishe
 _MISSED = np.array([5.0, 100.0])  # metres of cost for a radian of attitude missed, early and late
 
 
-Path = tuple[IntArray, IntArray]
-"""(m + 1,) base offsets and (m + 1,) postures."""
-
-
 class Found(NamedTuple):
     """What the colony found."""
 
-    offsets: IntArray
-    """(m + 1,) base offsets."""
-    postures: IntArray
-    """(m + 1,)."""
+    path: IntArray
+    """(m + 1, 2) base offset and posture on each layer."""
     cost: float
     """In metres, with penalties if something collides or the goal attitude is missed."""
     history: History
@@ -64,13 +58,16 @@ def ground_of(lattice: PostureLattice) -> Ground:
     cap = np.inf if problem.clearance_cap is None else problem.clearance_cap
     near = problem.delta * problem.length_unit**2
     arrays = (
-        *tree[:3], robot.primitives.kinds, lattice.frames, places, lattice.centers,
+        lattice.frames, places, lattice.centers,
         (base.distances * problem.position_weight) ** 2, lattice.indices, lattice.successors,
         lattice.bends, lattice.turns, lattice.allowed, np.zeros((0, 5), dtype=np.int64),
         _beside(base.indices), np.array([base.origin, lattice.origin]), problem.start[3:7],
         problem.goal[3:7], np.array([near, cap, problem.delta_d, float(problem.reach_attitude)]),
+        _reach(lattice),
     )  # fmt: skip
-    return Ground(*(np.array(a, order="C") for a in arrays))
+    kinds = np.array(robot.primitives.kinds)
+    obstacles = Obstacles(np.array(tree.nodes), tree.children.copy(), tree.spheres.copy(), kinds)
+    return Ground(obstacles, *(np.array(a, order="C") for a in arrays))
 
 
 def search(
@@ -88,8 +85,8 @@ def search(
     ahead = call(cost_to_go, ground, _nominal(lattice))
     tau = np.ones((m, offsets_count, offsets_count))
     tau_posture = np.ones((m, count, steps))
-    straight = (np.full(m + 1, ground.origin[0]), np.full(m + 1, ground.origin[1]))
-    best, best_cost = straight, cost_of(ground, *straight)
+    best = np.tile(ground.origin, (m + 1, 1))
+    best_cost = cost_of(ground, best)
     records: list[tuple[float, float, float, int]] = []
     stale, interrupted = 0, False
     walked = np.zeros((m, offsets_count, offsets_count), dtype=np.int64)
@@ -98,11 +95,11 @@ def search(
         for _ in range(cycles):
             paths, costs = [], []
             for _ in range(ants):
-                path = (np.empty(m + 1, dtype=np.int64), np.empty(m + 1, dtype=np.int64))
-                if call(walk, ground, rng, ahead, _KEEN, tau, tau_posture, *path):
+                path = np.empty((m + 1, 2), dtype=np.int64)
+                if call(walk, ground, rng, ahead, _KEEN, tau, tau_posture, path):
                     paths.append(path)
-                    walked[layers, path[0][:-1], path[0][1:]] += 1
-                    costs.append(cost_of(ground, *path))
+                    walked[layers, path[:-1, 0], path[1:, 0]] += 1
+                    costs.append(cost_of(ground, path))
             if not paths:
                 break
             leader = paths[int(np.argmin(costs))]
@@ -110,10 +107,10 @@ def search(
             stale += 1
             if cost < best_cost - 1e-9:
                 best, best_cost, stale = improved, cost, 0
-            distinct = len({b.tobytes() + p.tobytes() for b, p in paths})
+            distinct = len({path.tobytes() for path in paths})
             records.append((best_cost, cost, float(np.mean(costs)), distinct))
             if watch.on_cycle is not None:
-                nodes = [b * count + p for b, p in (best, *paths)]
+                nodes = [path[:, 0] * count + path[:, 1] for path in (best, *paths)]
                 counts = np.zeros((m + 1, offsets_count * count), dtype=np.int64)
                 np.add.at(counts, (np.arange(m + 1), np.array(nodes[1:])), 1)
                 unit = lattice.problem.length_unit
@@ -124,7 +121,10 @@ def search(
                     )
                 )  # fmt: skip
             if pheromone:
-                _lay(ground, best if len(records) % 3 == 0 else improved, tau, tau_posture)
+                for trail in (tau, tau_posture):
+                    np.maximum(_PERSISTENCE * trail, _LEAST, out=trail)
+                leader = best if len(records) % 3 == 0 else improved
+                call(deposit, ground, 1.0 - _PERSISTENCE, leader, tau, tau_posture)
             if stale >= _PATIENCE:
                 break
             if watch.over():
@@ -141,65 +141,48 @@ def search(
                     break
     except KeyboardInterrupt:
         interrupted = True
-    return Found(*best, best_cost, _history(records), walked, interrupted)
+    return Found(best, best_cost, _history(records), walked, interrupted)
 
 
-def _descended(ground: Ground, rng: np.random.Generator, path: Path) -> tuple[Path, float]:
+def _descended(ground: Ground, rng: np.random.Generator, path: IntArray) -> tuple[IntArray, float]:
     """A path improved by shifts that lower its cost."""
-    found = (np.empty_like(path[0]), np.empty_like(path[1]))
-    late = np.full(2, _MISSED[1])
-    offsets, postures = path[0].copy(), path[1].copy()
-    cost = call(anneal, ground, rng, offsets, postures, _SHIFTS, 1e-3, 1e-4, late, *found)
+    found, late = np.empty_like(path), np.full(2, _MISSED[1])
+    cost = call(anneal, ground, rng, path, _SHIFTS, 1e-3, 1e-4, late, found)
     return found, float(cost)
 
 
 def annealed(
     ground: Ground,
     rng: np.random.Generator,
-    path: Path,
+    path: IntArray,
     shifts: int,
     hot: float,
     cold: float = _COLD,
-) -> tuple[Path, float]:
+) -> tuple[IntArray, float]:
     """The best path that annealing from `path` comes across, and its cost [m]."""
-    found = (np.empty_like(path[0]), np.empty_like(path[1]))
-    offsets, postures = path[0].copy(), path[1].copy()
-    cost = call(anneal, ground, rng, offsets, postures, shifts, hot, cold, _MISSED, *found)
+    found = np.empty_like(path)
+    cost = call(anneal, ground, rng, path, shifts, hot, cold, _MISSED, found)
     return found, float(cost)
 
 
-def cost_of(ground: Ground, offsets: IntArray, postures: IntArray) -> float:
-    """Cost of a path [m]."""
-    m = len(offsets) - 1
-    quats = np.empty((m + 1, 4))
-    quats[0] = ground.start
-    return float(
-        call(
-            path_cost,
-            ground,
-            offsets,
-            postures,
-            0,
-            quats,
-            np.zeros(m + 1),
-            float(_MISSED[1]),
-            np.inf,
-        )
-    )
+def cost_of(ground: Ground, path: IntArray) -> float:
+    """Cost of a path (m + 1, 2) [m]."""
+    return float(call(path_cost, ground, blank_course(path), float(_MISSED[1])))
 
 
-def bar(ground: Ground, layer: int, offsets: IntArray, postures: IntArray) -> Ground:
+def bar(ground: Ground, layer: int, path: IntArray) -> Ground:
     """The same ground without one edge of a path."""
-    edge = [layer, offsets[layer], postures[layer], offsets[layer + 1], postures[layer + 1]]
+    edge = [layer, *path[layer], *path[layer + 1]]
     return ground._replace(barred=np.vstack([ground.barred, np.array([edge], dtype=np.int64)]))
 
 
-def _lay(ground: Ground, path: tuple[IntArray, IntArray], tau: Array, tau_posture: Array) -> None:
-    offsets, postures = path
-    steps = np.array([step_between(ground, a, b) for a, b in pairwise(postures)])
-    for trail in (tau, tau_posture):
-        np.maximum(_PERSISTENCE * trail, _LEAST, out=trail)
-    call(deposit, 1.0 - _PERSISTENCE, offsets, steps, postures, tau, tau_posture)
+def _reach(lattice: PostureLattice) -> Array:
+    """(m + 1, n) how far the shapes reach from what the base turns about [m]."""
+    frames = lattice.frames
+    if not frames.shape[2]:
+        return np.zeros(frames.shape[:2])
+    places = np.linalg.norm(frames[..., 9:12] - lattice.centers[:, :, None], axis=-1)
+    return np.asarray(np.max(places + np.sum(frames[..., 12:15], axis=-1), axis=-1))
 
 
 def _nominal(lattice: PostureLattice) -> Array:
