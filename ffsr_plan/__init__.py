@@ -12,9 +12,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ffsr_plan import momentum
+from ffsr_plan.arms import arm_names
 from ffsr_plan.axes import Axis, Lattice, PostureAxis
+from ffsr_plan.bus import Bus, Panel
+from ffsr_plan.catalog import RobotSummary, robot_summaries
 from ffsr_plan.collision import Clearance, clearance
 from ffsr_plan.colony import AntSystem, MaxMinAntSystem
+from ffsr_plan.composition import Mount, compose
 from ffsr_plan.edge_proof import EdgeProof, certify_edge
 from ffsr_plan.errors import (
     AttitudeOutOfReach,
@@ -45,6 +49,7 @@ __all__ = [
     "AntSystem",
     "AttitudeOutOfReach",
     "Axis",
+    "Bus",
     "Clearance",
     "EdgeProof",
     "FfsrPlanError",
@@ -54,20 +59,25 @@ __all__ = [
     "LatticeOptimum",
     "LayeredLattice",
     "MaxMinAntSystem",
+    "Mount",
     "NoPath",
+    "Panel",
     "Plan",
     "PlanningError",
     "PostureAxis",
     "Problem",
     "Roadmap",
+    "RobotSummary",
     "Scenario",
     "Scene",
     "SpaceRobot",
     "StartInCollision",
     "UnprovenPath",
     "WheelMomentum",
+    "arm_names",
     "certify_edge",
     "clearance",
+    "compose",
     "load_robot",
     "load_scenario",
     "momentum",
@@ -75,6 +85,7 @@ __all__ = [
     "read_scenario",
     "refine",
     "robot_names",
+    "robot_summaries",
 ]
 
 _LAZY = ("Scenario", "load_scenario", "read_scenario")  # these need pydantic

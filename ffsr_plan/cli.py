@@ -128,15 +128,22 @@ def verify(
 
 @app.command()
 def robots() -> None:
-    """List the bundled robots."""
-    from ffsr_plan.robot import load_robot, robot_names
+    """List the bundled robots, and the arms that `ffsr_plan.compose` mounts on a bus."""
+    from ffsr_plan.arms import arm_names
+    from ffsr_plan.catalog import robot_summaries
 
-    table = Table("robot", "mass [kg]", "joints")
-    for name in robot_names():
-        robot = load_robot(name)
-        mass = sum(body.mass for body in robot.model.inertias)
-        table.add_row(name, f"{mass:g}", ", ".join(robot.joint_names) or "none")
+    table = Table("robot", "kg", "reach", "postures", "joints", show_lines=True)
+    for robot in robot_summaries():
+        count = len(robot.joint_names)
+        table.add_row(
+            f"{robot.name}\n{count} joint{'' if count == 1 else 's'}",
+            f"{robot.mass:.4g}",
+            f"{robot.reach:.2f} m",
+            "\n".join(robot.postures),
+            "\n".join(robot.joint_names),
+        )
     out_console.print(table)
+    out_console.print(f"Arms for a bus of your own: {', '.join(arm_names())}")
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""Meshes that a URDF names: where they lie, and the corners of their convex hulls."""
+"""Meshes that a URDF names: where they lie, their triangles, the corners of their convex hulls."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ffsr_plan.errors import InvalidInput
-from ffsr_plan.inputs import Array, frozen
+from ffsr_plan.inputs import Array, IntArray, frozen
 
 _SUFFIXES = (".stl", ".obj", ".dae", ".ply")
 
@@ -21,7 +21,8 @@ def find(address: str, folders: Sequence[str]) -> Path | None:
     scheme, divider, rest = address.rpartition("://")
     if divider and scheme not in ("package", "file"):
         return None
-    places = [Path(rest)] if scheme == "file" else [Path(folder) / rest for folder in folders]
+    whole = scheme == "file" or Path(rest).is_absolute()
+    places = [Path(rest)] if whole else [Path(folder) / rest for folder in folders]
     return next((place for place in places if place.is_file()), None)
 
 
@@ -33,6 +34,18 @@ def hull_corners(address: str, folders: Sequence[str], where: str) -> Array:
     Raises:
         InvalidInput: `where` (link), the address, and what is wrong with it.
     """
+    vertices = _mesh(address, folders, where)[0]
+    return frozen(hull(vertices, where, address)[0])
+
+
+def surface(address: str, folders: Sequence[str], where: str) -> Array:
+    """(k, 3, 3) corners of a mesh's triangles [m]; see `hull_corners`."""
+    vertices, triangles = _mesh(address, folders, where)
+    return frozen(vertices[triangles])
+
+
+def _mesh(address: str, folders: Sequence[str], where: str) -> tuple[Array, IntArray]:
+    """Vertices (n, 3) [m], their unit applied, and triangles (k, 3)."""
     path = find(address, folders)
     if path is None:
         looked = ", ".join(folders) or "no folder"
@@ -42,20 +55,22 @@ def hull_corners(address: str, folders: Sequence[str], where: str) -> Array:
     if path.suffix.lower() not in _SUFFIXES:
         raise InvalidInput(where, address, f"a mesh file: {', '.join(_SUFFIXES)}")
     try:
-        vertices = _vertices(path)
+        vertices, triangles = _read(path)
     except Exception as error:  # whatever a parser trips over in a file of any content
         raise InvalidInput(where, address, f"a mesh file that can be read ({error})") from None
     if len(vertices) < 4 or not np.isfinite(vertices).all():
         raise InvalidInput(where, address, "a mesh of at least four finite vertices")
-    return frozen(hull(vertices, where, address)[0])
+    return vertices, triangles
 
 
-def _vertices(path: Path) -> Array:
+def _read(path: Path) -> tuple[Array, IntArray]:
     import trimesh
 
     scene = trimesh.load_scene(path)
     scale = trimesh.units.unit_conversion(scene.units, "meters") if scene.units else 1.0
-    return np.asarray(scene.to_mesh().vertices, dtype=np.float64) * scale
+    mesh = scene.to_mesh()
+    vertices = np.asarray(mesh.vertices, dtype=np.float64) * scale
+    return vertices, np.asarray(mesh.faces, dtype=np.int64)
 
 
 def hull(points: Array, where: str, address: str) -> tuple[Array, Array]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
+import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.errors import InvalidInput
 from ffsr_plan.mesh_files import find
+from ffsr_plan.urdf_check import Counts
 
 
 def build_model(text: str, where: str) -> pin.Model:
@@ -53,3 +55,23 @@ def visual_model(model: pin.Model, text: str, folders: Sequence[str]) -> pin.Geo
         )  # fmt: skip
     except ValueError:
         return pin.GeometryModel()
+
+
+def check_loaded(name: str, model: pin.Model, collision: pin.GeometryModel, counts: Counts) -> None:
+    """Pinocchio drops some links and shapes without an error; count what arrived."""
+    links = sum(frame.type == pin.FrameType.BODY for frame in model.frames)
+    if (links, collision.ngeoms) != counts:
+        raise InvalidInput(
+            name,
+            f"{links} links and {collision.ngeoms} collision shapes after loading",
+            f"all {counts.links} links and {counts.collisions} shapes of the file, in one tree",
+        )
+    base = model.inertias[1]
+    if base.mass <= 0.0 or np.linalg.eigvalsh(base.inertia)[0] <= 0.0:
+        raise InvalidInput(
+            f"{name}, root link", f"mass {base.mass:g} kg", "a mass and a full inertia"
+        )
+    for frame in model.frames:  # a joint's inertia is that of all links fixed to one another
+        if frame.type == pin.FrameType.BODY and model.inertias[frame.parentJoint].mass <= 0.0:
+            allowed = "a mass for what moves, the link's own or of a link fixed to it"
+            raise InvalidInput(f"{name}, link '{frame.name}'", "0 kg", allowed)

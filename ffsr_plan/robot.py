@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
-from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from ffsr_plan import bundled
+from ffsr_plan.adjacency import may_touch
 from ffsr_plan.attitude import IDENTITY, from_angles, to_angles
 from ffsr_plan.errors import InvalidInput, unknown_name
 from ffsr_plan.inputs import FARTHEST, Array, finite_array, frozen, number, one_of, unit_quaternion
 from ffsr_plan.kinematics import Tree
-from ffsr_plan.pinocchio_urdf import build_model, visual_model
+from ffsr_plan.pinocchio_urdf import build_model, check_loaded, visual_model
 from ffsr_plan.primitives import Primitives, primitives
 from ffsr_plan.shapes import CONTAINERS, Containers, Replacement, collision_geometry
 from ffsr_plan.srdf import disabled_pairs, named_postures
-from ffsr_plan.urdf_check import Counts, check_urdf, parse
+from ffsr_plan.urdf_check import check_urdf, parse
 
 
 class Components(NamedTuple):
@@ -231,6 +231,24 @@ class SpaceRobot:
                     f"{self.lower[k]:g} to {self.upper[k]:g}",
                 )
 
+    def save(self, path: str | Path) -> None:
+        """Write `urdf` to a `.urdf` file and the SRDF, if there is one, to a `.srdf` beside it.
+
+        Files of the same names are replaced. Meshes that the URDF names are not copied.
+
+        Raises:
+            InvalidInput: not a `.urdf` path, or one that cannot be written.
+        """
+        target = Path(path)
+        if target.suffix != ".urdf":
+            raise InvalidInput("path", str(path), "a path that ends in .urdf")
+        try:
+            target.write_text(self.urdf, encoding="utf-8")
+            if self.srdf:
+                target.with_suffix(".srdf").write_text(self.srdf, encoding="utf-8")
+        except OSError as error:
+            raise InvalidInput("path", str(path), f"a file to be written ({error})") from None
+
     def link_of(self, geometry: pin.GeometryObject) -> str:
         """Name of the URDF link that a collision or visual shape belongs to."""
         return str(self.model.frames[geometry.parentFrame].name)
@@ -317,10 +335,10 @@ def robot_from_urdf(
     collision, replacements = collision_geometry(
         model, parse(text, name), name, folders, containers, corners
     )
-    _check_loaded(name, model, collision, counts)
+    check_loaded(name, model, collision, counts)
     links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
     disabled = disabled_pairs(srdf, f"{name}, SRDF", links)
-    tied = _tied(parse(text, name))
+    tied = may_touch(parse(text, name))
     shapes = [(str(model.frames[g.parentFrame].name)) for g in collision.geometryObjects]
     for a, first in enumerate(shapes):
         for b, second in enumerate(shapes[:a]):
@@ -340,50 +358,3 @@ def _read(what: str, path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidInput(what, str(path), f"a readable UTF-8 file ({error})") from None
-
-
-def _tied(robot: ElementTree.Element) -> Callable[[str, str], bool]:
-    """Whether two links may touch: of one rigid body, or with one moving joint between them.
-
-    Links without a shape of their own, such as mounts, do not count as lying between.
-    """
-    above: dict[str, tuple[str, bool]] = {}
-    for joint in robot.findall("joint"):
-        ends = {end.tag: str(end.get("link")) for end in joint if end.tag in ("parent", "child")}
-        above[ends["child"]] = (ends["parent"], joint.get("type") != "fixed")
-    shaped = {link.get("name") for link in robot.findall("link") if link.findall("collision")}
-
-    def way_up(link: str) -> list[str]:
-        links = [link]
-        while links[-1] in above:
-            links.append(above[links[-1]][0])
-        return links
-
-    def tied(first: str, second: str) -> bool:
-        up, down = way_up(first), way_up(second)
-        while len(up) > 1 and len(down) > 1 and up[-2] == down[-2]:
-            up.pop()
-            down.pop()
-        moving = sum(above[link][1] for link in (*up[:-1], *down[:-1]))
-        between = {*up, *down} - {first, second}
-        return moving == 0 or (moving == 1 and not between & shaped)
-
-    return tied
-
-
-def _check_loaded(
-    name: str, model: pin.Model, collision: pin.GeometryModel, counts: Counts
-) -> None:
-    """Pinocchio drops some links and shapes without an error; count what arrived."""
-    links = sum(frame.type == pin.FrameType.BODY for frame in model.frames)
-    if (links, collision.ngeoms) != counts:
-        raise InvalidInput(
-            name,
-            f"{links} links and {collision.ngeoms} collision shapes after loading",
-            f"all {counts.links} links and {counts.collisions} shapes of the file, in one tree",
-        )
-    base = model.inertias[1]
-    if base.mass <= 0.0 or np.linalg.eigvalsh(base.inertia)[0] <= 0.0:
-        raise InvalidInput(
-            f"{name}, root link", f"mass {base.mass:g} kg", "a mass and a full inertia"
-        )

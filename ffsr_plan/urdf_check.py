@@ -166,18 +166,20 @@ def _names(root: ElementTree.Element, tag: str, where: str) -> list[str]:
 def _check_inertia(link: ElementTree.Element, where: str) -> None:
     inertial = link.find("inertial")
     if inertial is None:
-        return  # a frame without mass; that the base has one is checked after loading
+        return  # a frame without mass; that each moving body has one is checked after loading
     _check_origin(inertial, f"{where}, inertial")
     mass, inertia = inertial.find("mass"), inertial.find("inertia")
     if mass is None or inertia is None:
         raise InvalidInput(where, "inertial without mass or inertia", "both of them")
     (value,) = numbers(f"{where}, mass", mass.get("value"), 1)
-    if value <= 0.0:
-        raise InvalidInput(f"{where}, mass", value, "greater than 0 kg")
     entry = {
         key: numbers(f"{where}, {key}", inertia.get(key), 1)[0]
         for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
     }
+    frame = value == 0.0 and not any(entry.values())  # some files say so of tool frames
+    if value <= 0.0 and not frame:
+        allowed = "greater than 0 kg, or 0 kg without inertia for a frame"
+        raise InvalidInput(f"{where}, mass", value, allowed)
     tensor = np.array(
         [
             [entry["ixx"], entry["ixy"], entry["ixz"]],

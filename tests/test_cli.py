@@ -70,8 +70,8 @@ def test_demo_runs_and_never_overwrites_its_earlier_results(run, tmp_path):
 def test_robots_lists_the_bundled_ones(run):
     result = run("robots")
     assert result.exit_code == 0
-    assert "planar_dual_arm" in result.stdout
-    assert "left_1" in result.stdout
+    for word in ("planar_dual_arm", "left_1", "7.4", "stowed", "spread", "satellite_ur5", "kinova"):
+        assert word in result.stdout
 
 
 def test_no_path_is_exit_status_1_with_the_reason_on_standard_error(run, tmp_path):

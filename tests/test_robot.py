@@ -85,7 +85,7 @@ def test_a_robot_survives_pickling(robot):
 def test_robots_load_by_name_and_by_path(robot):
     path = folder("urdf") / "planar_dual_arm.urdf"
     assert fp.load_robot(path).model == robot.model == fp.load_robot(str(path)).model
-    assert fp.robot_names() == ["planar_dual_arm", "point"]
+    assert fp.robot_names() == ["planar_dual_arm", "point", "satellite_ur5", "spatial_dual_arm"]
 
 
 def test_every_bundled_urdf_is_listed():

@@ -162,3 +162,46 @@ def test_meshes_too_small_or_too_large_are_refused_with_link_and_address(scale, 
     text = urdf(body("base", mesh("m", (scale,) * 3)))
     with pytest.raises(fp.InvalidInput, match=f"made, link 'base', collision mesh: {message}"):
         robot_from_urdf(text, "made", meshes={"m": corners})
+
+
+FRAMES = ("", inertial(0.0, (0.0, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize("frame", FRAMES, ids=["no inertial", "zeros"])
+def test_frames_without_mass_may_be_fixed_to_bodies_and_change_nothing(frame):
+    """A tool frame, a mount between base and arm, and a mass that a frame carries."""
+    parts = (
+        body("base"), link("mount", frame), link("arm", frame), body("weight"), link("tool", frame),
+        hinge("j", "base", "mount", kind="fixed"), hinge("k", "mount", "arm"),
+        hinge("l", "arm", "weight", kind="fixed"), hinge("m", "weight", "tool", kind="fixed"),
+    )  # fmt: skip
+    robot = robot_from_urdf(urdf(*parts), "made")
+    plain = urdf(
+        body("base"), link("arm", inertial(1.0, (1.0, 1.0, 1.0), (1, 0, 0))),
+        hinge("k", "base", "arm", (2, 0, 0)),
+    )  # fmt: skip
+    wanted = robot_from_urdf(plain, "plain").model.inertias
+    for mine, other in zip(robot.model.inertias, wanted, strict=True):
+        assert mine.isApprox(other)
+
+
+@pytest.mark.parametrize("frame", FRAMES, ids=["no inertial", "zeros"])
+def test_a_moving_body_without_mass_is_refused_by_name(frame):
+    for tip in ("", link("tip", frame) + hinge("m", "b", "tip", kind="fixed")):
+        text = urdf(
+            body("base"), body("a"), link("b", frame), hinge("j", "base", "a"),
+            hinge("k", "a", "b"), tip,
+        )  # fmt: skip
+        with pytest.raises(fp.InvalidInput, match="made, link 'b': got '0 kg'; allowed: a mass"):
+            robot_from_urdf(text, "made")
+
+
+@pytest.mark.parametrize(("mass", "moments"), [(0.0, (1.0, 1.0, 1.0)), (-1.0, (0.0, 0.0, 0.0))])
+def test_neither_an_inertia_without_mass_nor_a_negative_mass_is_taken(mass, moments):
+    text = urdf(
+        body("base"),
+        link("a", inertial(mass, moments)),
+        hinge("j", "base", "a", kind="fixed"),
+    )
+    with pytest.raises(fp.InvalidInput, match=r"made, link 'a', mass: got .*greater than 0 kg, or"):
+        robot_from_urdf(text, "made")
