@@ -42,7 +42,6 @@ Out = Annotated[
     Path | None, typer.Option(help="Directory for plan.json, plan.html and the figures.")
 ]
 PlanFile = Annotated[Path, typer.Argument(metavar="PLAN.json")]
-Limit = Annotated[float | None, typer.Option()]
 Force = Annotated[bool, typer.Option("--force", help="Replace results that are there already.")]
 
 
@@ -148,15 +147,15 @@ def export(
 @app.command()
 def timed(
     plan_file: PlanFile,
-    joint_acceleration: Limit = None,
-    thruster_acceleration: Limit = None,
-    joint_velocity: Annotated[float | None, typer.Option(help="Without, the URDF's.")] = None,
-    base_velocity: Limit = None,
-    joint_torque: Limit = None,
-    joint_jerk: Limit = None,
-    thruster_jerk: Limit = None,
-    turn_velocity: Limit = None,
-    turn_acceleration: Limit = None,
+    joint_acceleration: Annotated[float | None, typer.Option(help="rad/s^2 or m/s^2")] = None,
+    thruster_acceleration: Annotated[float | None, typer.Option(help="m/s^2")] = None,
+    joint_velocity: Annotated[float | None, typer.Option(help="rad/s or m/s; the URDF's")] = None,
+    base_velocity: Annotated[float | None, typer.Option(help="m/s")] = None,
+    joint_torque: Annotated[float | None, typer.Option(help="N m or N")] = None,
+    joint_jerk: Annotated[float | None, typer.Option(help="rad/s^3 or m/s^3")] = None,
+    thruster_jerk: Annotated[float | None, typer.Option(help="m/s^3")] = None,
+    turn_velocity: Annotated[float | None, typer.Option(help="rad/s")] = None,
+    turn_acceleration: Annotated[float | None, typer.Option(help="rad/s^2")] = None,
     velocity_jump: Annotated[
         float, typer.Option(help="Pass corners of the base's path by pulses of so many m/s.")
     ] = 0.0,
@@ -164,7 +163,7 @@ def timed(
     rate: Annotated[float, typer.Option(help="Instants a second.")] = 10.0,
     force: Force = False,
 ) -> None:
-    """Fly a saved plan as fast as limits (SI units) allow: duration, delta-v, thrust, torques."""
+    """Fly a saved plan as fast as limits allow: duration, delta-v, thrust, torques."""
     given = {k: v for k, v in locals().items() if k not in ("plan_file", "csv", "rate", "force")}
     with _errors_on_stderr():
         from ffsr_plan.cli_timed import flight_rows

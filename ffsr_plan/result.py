@@ -20,6 +20,7 @@ from ffsr_plan.motion import Motion
 from ffsr_plan.placements import shape_placements
 from ffsr_plan.problem import Problem
 from ffsr_plan.roadmap import Certificate
+from ffsr_plan.tables import path_table, write_csv
 from ffsr_plan.timing import TimedPlan, timed
 from ffsr_plan.wheels import WheelMomentum, wheel_momentum
 
@@ -290,8 +291,6 @@ class Plan:
         Raises:
             InvalidInput: a file that cannot be written, or fewer than two samples.
         """
-        from ffsr_plan.tables import path_table, write_csv
-
         rows = self.problem.lattice.divisions + 1
         if samples is not None:
             rows = whole_number("samples", samples, at_least=2, at_most=1_000_000)

@@ -22,6 +22,7 @@ from ffsr_plan.inverse_dynamics import States, states
 from ffsr_plan.limits import Limits, check_limits
 from ffsr_plan.motion import Motion
 from ffsr_plan.straight_runs import StraightRuns, straight_runs
+from ffsr_plan.tables import trajectory_table, write_csv
 from ffsr_plan.time_law import TimeLaw, time_law
 
 _NODES = 16  # of Gauss-Lobatto quadrature, which looks at both ends of a piece
@@ -41,9 +42,9 @@ class TimedPlan:
         rests: (k,) times at which the robot rests on the way, start and goal not counted [s].
         pulse_times: (p,) times at which thrusters turn the base's velocity at once [s].
         pulses: (p, 3) what they change it by, world axes [m/s].
-        corner_cut: how far thrusters of finite strength cut the sharpest corner [m]: a pulse of
-            size d at the limit a on thrust / mass lasts d / a and takes the whole robot d^2 / 8a
-            off its path; less than the clearance proven along the whole motion.
+        corner_cut: how far off its path pulses take the whole robot, at most [m], if they are drawn
+            out: one of size d lasts d / a, a the limit on thrust / mass, and cuts its corner by
+            d^2 / 8a. Less than the clearance proven along the whole motion.
     """
 
     motion: Motion
@@ -100,8 +101,6 @@ class TimedPlan:
         Raises:
             InvalidInput: a file that cannot be written, or a rate that cannot be.
         """
-        from ffsr_plan.tables import trajectory_table, write_csv
-
         times = self.clock(rate)
         write_csv(Path(path), trajectory_table(self.motion.robot, times, self.at(times)))
 
@@ -134,17 +133,17 @@ def timed(motion: Motion, limits: Limits, clearance: float) -> TimedPlan:
     if len(jumped):
         pulses = runs.jumps()[jumped] * (speeds[1:-1] / factors[1:])[jumped, None]
     sizes = np.linalg.norm(pulses, axis=1)
-    strength = limits.acceleration[0]
-    cut = float(np.max(sizes, initial=0.0) ** 2 / (8.0 * strength))
-    if len(jumped) and cut >= clearance:
-        most = np.sqrt(8.0 * strength * max(clearance, 0.0))
-        raise InvalidInput(
-            "velocity_jump", limits.velocity_jump,
-            f"less than {most:.3g} m/s: thrusters of {strength:g} m/s^2 would cut a corner by "
-            f"{cut:.3g} m, and no more than {max(clearance, 0.0):.3g} m are proven clear",
-        )  # fmt: skip
     ends = slowed.times[np.searchsorted(law.run, np.arange(1, len(runs.first)))]
     resting = speeds[1:-1] == 0.0
+    cut = _corner_cut(ends[~resting], sizes, limits.acceleration[0])
+    if len(jumped) and cut >= clearance:
+        room = max(clearance, 0.0)
+        raise InvalidInput(
+            "velocity_jump", limits.velocity_jump,
+            f"about {0.99 * np.max(sizes) * np.sqrt(room / cut):.2g} m/s or less: thrusters of "
+            f"{limits.acceleration[0]:g} m/s^2 would cut a corner by {cut:.3g} m, and no more "
+            f"than {room:.3g} m are proven clear",
+        )  # fmt: skip
     return TimedPlan(
         motion,
         float(np.sum(push / factors[law.run]) + np.sum(sizes)),
@@ -155,6 +154,18 @@ def timed(motion: Motion, limits: Limits, clearance: float) -> TimedPlan:
         slowed,
         runs,
     )
+
+
+def _corner_cut(times: Array, sizes: Array, strength: float) -> float:
+    """How far pulses (p,) [m/s] at times (p,) [s], each drawn out evenly, lead off the path [m].
+
+    One of size d lasts d / a and is a / 2 (d / 2a - |t|)^2 off the path while it lasts; several sum
+    up to most at the time of one of them.
+    """
+    if not len(times):
+        return 0.0
+    left = sizes / (2.0 * strength) - np.abs(times[:, None] - times)
+    return float(np.max(np.sum(np.maximum(left, 0.0) ** 2, axis=1)) * strength / 2.0)
 
 
 def _states(

@@ -6,24 +6,36 @@ import re
 
 import numpy as np
 import pytest
-from builders import random_configuration, random_robot
+from builders import box, inertial, joint, link, urdf
 
 import ffsr_plan as fp
 from ffsr_plan import attitude
+from ffsr_plan.robot import robot_from_urdf
 
 
 @pytest.fixture(scope="module")
 def plan():
-    """A robot with hinges, slides and joints without end, on a bent path."""
-    robot, rng = random_robot(7), np.random.default_rng(7)
-    assert 0 < robot.prismatic.sum() < robot.nd
-    assert np.any(np.isinf(robot.upper))
-    start, goal = (random_configuration(robot, rng, 0.2) for _ in range(2))
-    goal = np.array(goal)
-    goal[0] += 6.0
+    """A hinge, a slide and a joint without end that passes half a turn, on a bent path."""
+    body = inertial(1.0, (0.05, 0.06, 0.07), (0.1, 0.0, 0.0))
+    robot = robot_from_urdf(
+        urdf(
+            link("base", inertial(9.0, (0.4, 0.5, 0.6)), box((0.4, 0.4, 0.4))),
+            link("wrist", body, box((0.1, 0.1, 0.1))),
+            link("hand", body, box((0.1, 0.1, 0.1), (0.2, 0.0, 0.0))),
+            link("tray", body, box((0.1, 0.1, 0.1))),
+            joint("yaw, left", "revolute", "base", "wrist", (0.0, 0.5, 0.0), axis=(0.0, 0.6, 0.8)),
+            joint("spin", "continuous", "wrist", "hand", (0.2, 0.0, 0.0), axis=(1.0, 0.0, 0.0)),
+            joint("slide", "prismatic", "base", "tray", (0.0, -0.5, 0.0), axis=(0.0, -1.0, 0.0)),
+        ),
+        "made",
+    )
+    start = robot.configuration(joints={"yaw, left": 0.3, "spin": 2.8, "slide": 0.1})
+    goal = robot.configuration(
+        (6.0, 0.0, 0.0), (0.5, 0.2, -0.3), {"yaw, left": -0.5, "spin": -2.9, "slide": 0.4}
+    )
     problem = fp.Problem(
         robot, fp.Scene([[3.0, 0.0, 0.0]], [0.3]), start, goal, mode="attitude-held", delta=0.5,
-        lattice=fp.Lattice(6, fp.Axis(3, 0.4)),
+        lattice=fp.Lattice(6, fp.Axis(6, 0.4)),
     )  # fmt: skip
     return fp.plan(problem, fp.LatticeOptimum())
 
@@ -94,6 +106,9 @@ def test_a_trajectory_read_back_is_the_timed_plan(plan, flight, tmp_path):
         assert np.array_equal(vectors(table, header), values)
         assert np.any(values != 0.0)
     for k, name in enumerate(robot.joint_names):
+        position = table[f"{name} position [{unit(robot, name, 'rad', 'm')}]"]
+        assert np.array_equal(position, states.joints[:, k])
+        assert np.abs(np.diff(position)).max() < 1.0  # no jump at half a turn
         for quantity, values, units in (
             ("velocity", states.velocities[:, 6 + k], ("rad/s", "m/s")),
             ("acceleration", states.accelerations[:, 6 + k], ("rad/s^2", "m/s^2")),
@@ -126,6 +141,7 @@ def test_tables_replace_whole_files_and_say_where_they_cannot(plan, flight, tmp_
         for write in (plan.to_csv, lambda path: flight.to_csv(path, rate=1.0), plan.save):
             with pytest.raises(fp.InvalidInput, match="can be written"):
                 write(place)
+    assert not list(tmp_path.parent.glob("*.part"))
 
 
 @pytest.mark.parametrize("rate", [0.0, -1.0, np.inf, "fast", 1e9])
