@@ -5,6 +5,11 @@ is the fastest along every straight run under the limits on velocity, accelerati
 and torques depend on the way as well; where they come out too large, everything between two rests
 is slowed down evenly, by the square root of the excess, since in free flight all forces go as the
 square of the pace.
+
+A pulse at a corner of the base's path is thought of as short. Drawn out, it takes the whole robot
+off its path, but turns nothing, since thrust through the centre of mass carries no angular
+momentum: no point goes farther astray than the base does, so that a cut below the proven clearance
+touches nothing.
 """
 
 from __future__ import annotations
