@@ -39,6 +39,7 @@ from ffsr_plan.result import Plan
 from ffsr_plan.roadmap import Roadmap
 from ffsr_plan.robot import SpaceRobot, load_robot, robot_names
 from ffsr_plan.scene import Scene
+from ffsr_plan.timing import TimedPlan
 from ffsr_plan.wheels import WheelMomentum
 
 if TYPE_CHECKING:
@@ -72,6 +73,7 @@ __all__ = [
     "Scene",
     "SpaceRobot",
     "StartInCollision",
+    "TimedPlan",
     "UnprovenPath",
     "WheelMomentum",
     "arm_names",

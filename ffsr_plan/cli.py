@@ -1,4 +1,4 @@
-"""The command line: `ffsr-plan demo | plan | verify | robots`.
+"""The command line: `ffsr-plan demo | plan | verify | export | timed | robots`.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
 plan that does not verify, 2 bad input, 130 interrupted without a plan.
@@ -41,6 +41,7 @@ err_console = Console(stderr=True, highlight=False)
 Out = Annotated[
     Path | None, typer.Option(help="Directory for plan.json, plan.html and the figures.")
 ]
+PlanFile = Annotated[Path, typer.Argument(metavar="PLAN.json")]
 Force = Annotated[bool, typer.Option("--force", help="Replace results that are there already.")]
 
 
@@ -112,7 +113,7 @@ def plan(
 
 @app.command()
 def verify(
-    plan_file: Annotated[Path, typer.Argument(metavar="PLAN.json")],
+    plan_file: PlanFile,
     samples: Annotated[int, typer.Option(help="Distance checks per edge.")] = 2000,
 ) -> None:
     """Check a saved plan again, densely and independently of the planner."""
@@ -124,6 +125,59 @@ def verify(
         out_console.print(_report_table(report))
         if not report.ok:
             raise PlanningError("the plan does not verify: " + "; ".join(report.problems))
+
+
+@app.command()
+def export(
+    plan_file: PlanFile,
+    table: Annotated[Path, typer.Argument(metavar="PATH.csv")],
+    samples: Annotated[
+        int | None, typer.Option(help="Rows, evenly spaced; without, one for each node.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Write the path of a saved plan as a table, units in its header."""
+    with _errors_on_stderr():
+        from ffsr_plan.result import Plan
+
+        _refuse_to_replace("PATH.csv", table, force)
+        Plan.load(plan_file).to_csv(table, samples)
+
+
+@app.command()
+def timed(
+    plan_file: PlanFile,
+    joint_acceleration: Annotated[float | None, typer.Option(help="rad/s^2 or m/s^2")] = None,
+    thruster_acceleration: Annotated[float | None, typer.Option(help="m/s^2")] = None,
+    joint_velocity: Annotated[float | None, typer.Option(help="rad/s or m/s; the URDF's")] = None,
+    base_velocity: Annotated[float | None, typer.Option(help="m/s")] = None,
+    joint_torque: Annotated[float | None, typer.Option(help="N m or N")] = None,
+    joint_jerk: Annotated[float | None, typer.Option(help="rad/s^3 or m/s^3")] = None,
+    thruster_jerk: Annotated[float | None, typer.Option(help="m/s^3")] = None,
+    turn_velocity: Annotated[float | None, typer.Option(help="rad/s")] = None,
+    turn_acceleration: Annotated[float | None, typer.Option(help="rad/s^2")] = None,
+    velocity_jump: Annotated[
+        float, typer.Option(help="Pass corners of the base's path by pulses of so many m/s.")
+    ] = 0.0,
+    csv: Annotated[Path | None, typer.Option(help="Write the trajectory to this table.")] = None,
+    rate: Annotated[float, typer.Option(help="Instants a second.")] = 10.0,
+    force: Force = False,
+) -> None:
+    """Fly a saved plan as fast as limits allow: duration, delta-v, thrust, torques."""
+    given = {k: v for k, v in locals().items() if k not in ("plan_file", "csv", "rate", "force")}
+    with _errors_on_stderr():
+        from ffsr_plan.cli_timed import flight_rows
+        from ffsr_plan.result import Plan
+
+        if csv is not None:
+            _refuse_to_replace("--csv", csv, force)
+        flown = Plan.load(plan_file).timed(**given)
+        summary = Table(show_header=False)
+        for name, value in flight_rows(flown, rate):
+            summary.add_row(name, value)
+        out_console.print(summary)
+        if csv is not None:
+            flown.to_csv(csv, rate)
 
 
 @app.command()
@@ -251,6 +305,11 @@ def _prepared(target: Path, force: bool) -> Path:
             f"a directory without {', '.join(present)}; --force replaces them",
         )
     return target
+
+
+def _refuse_to_replace(what: str, path: Path, force: bool) -> None:
+    if path.exists() and not force:
+        raise InvalidInput(what, str(path), "a file that is not there yet; --force replaces it")
 
 
 def _unused(base: Path) -> Path:

@@ -122,13 +122,19 @@ class Motion:
     def at(self, edge: IntArray, time: Array) -> Array:
         """(N, nq) configurations on `edge` (N,) at `time` (N,) in [0, 1]."""
         t = time[:, None]
-        joints = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
+        joints = self.joints_at(edge, time)
         quat = self._attitudes((edge + time) / self.edges)
         if self.floats:
             position = self._afloat(quat, joints)
         else:
             position = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
         return self.robot.assemble(position, quat, joints)
+
+    def joints_at(self, edge: IntArray, time: Array) -> Array:
+        """(N, nd) joint values there, continuous joints without a jump at half a turn."""
+        t = time[:, None]
+        values: Array = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
+        return values
 
     def _afloat(self, quats: Array, joint_values: Array) -> Array:
         """(N, 3) base origin at attitudes (N, 4) and joints (N, nd), the centre of mass at rest."""

@@ -23,6 +23,7 @@ from ffsr_plan.roadmap import Certificate
 from ffsr_plan.robot import SpaceRobot, robot_from_urdf
 from ffsr_plan.scene import Scene
 from ffsr_plan.shapes import Containers
+from ffsr_plan.text_files import write_whole
 
 FORMAT = "ffsr-plan/2"
 _PLAIN = (
@@ -170,16 +171,8 @@ def _posture_axis(entry: dict[str, Any]) -> PostureAxis:
 def write(plan: Plan, path: Path) -> None:
     """Write `path`; an unfinished file never takes its place."""
     data = to_dict(plan)
-    partial = path.with_name(path.name + ".part")
     text = json.dumps({"sha256": _digest(data), **data}, allow_nan=False, indent=1)
-    try:
-        partial.write_text(text, encoding="utf-8")
-        partial.replace(path)
-    except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise InvalidInput(
-            "plan file", str(path), f"a file that can be written ({error})"
-        ) from None
+    write_whole("plan file", path, text)
 
 
 def read(path: Path) -> Plan:
@@ -197,9 +190,7 @@ def read(path: Path) -> Plan:
         ) from None
     except (RecursionError, ValueError) as error:
         raise InvalidInput(what, str(error), "a plan file") from None
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        found = data.get("format") if isinstance(data, dict) else type(data).__name__
-        raise InvalidInput(what, found, f"format '{FORMAT}'")
+    _check_format(what, data)
     try:
         unchanged = data.pop("sha256", None) == _digest(data)
     except ValueError:  # not a number, which no plan file holds
@@ -208,8 +199,18 @@ def read(path: Path) -> Plan:
         raise InvalidInput(
             what, "contents that do not match their digest", "an unchanged plan file"
         )
+    return checked(what, data)
+
+
+def checked(what: str, data: object) -> Plan:
+    """The plan of a dictionary, which may come from anywhere; `what` names it in errors.
+
+    Raises:
+        InvalidInput: not what `to_dict` gives.
+    """
+    fields = _check_format(what, data)
     try:
-        plan = from_dict(data)
+        plan = from_dict(fields)
         _check_shapes(plan)
         _check_numbers(plan)
         return plan
@@ -217,6 +218,13 @@ def read(path: Path) -> Plan:
         if isinstance(error, FfsrPlanError):
             raise
         raise InvalidInput(what, repr(error), "every field of a plan file") from None
+
+
+def _check_format(what: str, data: object) -> dict[str, Any]:
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        found = data.get("format") if isinstance(data, dict) else type(data).__name__
+        raise InvalidInput(what, found, f"format '{FORMAT}'")
+    return data
 
 
 def _check_shapes(plan: Plan) -> None:

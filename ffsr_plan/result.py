@@ -13,12 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 from ffsr_plan.attitude import angle_between, to_angles
 from ffsr_plan.colony import History, Planner, Trails
 from ffsr_plan.errors import InvalidInput
-from ffsr_plan.inputs import Array, Flags, IntArray, finite_array
+from ffsr_plan.inputs import Array, Flags, IntArray, finite_array, whole_number
 from ffsr_plan.lattice import LayeredLattice
+from ffsr_plan.limits import PerJoint, read_limits
 from ffsr_plan.motion import Motion
 from ffsr_plan.placements import shape_placements
 from ffsr_plan.problem import Problem
 from ffsr_plan.roadmap import Certificate
+from ffsr_plan.tables import path_table, write_csv
+from ffsr_plan.timing import TimedPlan, timed
 from ffsr_plan.wheels import WheelMomentum, wheel_momentum
 
 if TYPE_CHECKING:  # these import this module; a plan calls them when asked to
@@ -140,6 +143,63 @@ class Plan:
         """
         return wheel_momentum(self.motion, duration, times)
 
+    def timed(
+        self,
+        *,
+        joint_acceleration: PerJoint = None,
+        thruster_acceleration: float | None = None,
+        joint_velocity: PerJoint = None,
+        base_velocity: float | None = None,
+        joint_torque: PerJoint = None,
+        joint_jerk: PerJoint = None,
+        thruster_jerk: float | None = None,
+        turn_velocity: float | None = None,
+        turn_acceleration: float | None = None,
+        velocity_jump: float = 0.0,
+    ) -> TimedPlan:
+        """The plan flown as fast as limits allow, from rest to rest, on exactly the proven path.
+
+        It rests wherever the path has a corner: there a velocity would have to change at once.
+        What is not named is not limited, but for `joint_velocity`, which is the URDF's. Limits for
+        joints are one number for all of them, or numbers by joint name.
+
+        Args:
+            joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
+            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]; without meaning
+                where the robot floats freely.
+            joint_velocity: [rad/s or m/s]; the URDF's for joints not named.
+            base_velocity: of the base origin [m/s].
+            joint_torque: [N m or N].
+            joint_jerk: [rad/s^3 or m/s^3].
+            thruster_jerk: of the base origin [m/s^3].
+            turn_velocity: of a base that wheels turn [rad/s].
+            turn_acceleration: of a base that wheels turn [rad/s^2].
+            velocity_jump: by how much thrusters may change the velocity of the base in one pulse
+                [m/s]; instead of resting at a corner of its path, the robot then passes it at the
+                speed at which the pulse is as large. A pulse takes time, so that the corner is cut
+                a little (`TimedPlan.corner_cut`); by less than the proven clearance, or the jump
+                is refused.
+
+        Raises:
+            InvalidInput: a limit that cannot be, an acceleration that is needed and not given,
+                pulses that the proven clearance has no room for, or a plan along which nothing
+                moves.
+        """
+        limits = read_limits(
+            self.problem.robot,
+            joint_velocity=joint_velocity,
+            joint_acceleration=joint_acceleration,
+            joint_jerk=joint_jerk,
+            joint_torque=joint_torque,
+            base_velocity=base_velocity,
+            thruster_acceleration=thruster_acceleration,
+            thruster_jerk=thruster_jerk,
+            turn_velocity=turn_velocity,
+            turn_acceleration=turn_acceleration,
+            velocity_jump=velocity_jump,
+        )
+        return timed(self.motion, limits, self.certificate.least_clearance)
+
     def trail_segments(self, most: int = 3000) -> tuple[Array, Array]:
         """Where the ants walked, faint trails first.
 
@@ -200,6 +260,41 @@ class Plan:
         from ffsr_plan.plan_file import read
 
         return read(Path(path))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything, as in the file that `save` writes, in plain Python values fit for JSON."""
+        from ffsr_plan.plan_file import to_dict
+
+        return to_dict(self)
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> Plan:
+        """The inverse of `to_dict`.
+
+        Raises:
+            InvalidInput: not what `to_dict` gives.
+        """
+        from ffsr_plan.plan_file import checked
+
+        return checked("plan", data)
+
+    def to_csv(self, path: str | Path, samples: int | None = None) -> None:
+        """Write the path as a table, one configuration a row, reaction included, units on top.
+
+        Columns: path parameter, base origin in the world, its quaternion and ZYX angles, joints. A
+        file that is there is replaced. `timed(...).to_csv` writes a trajectory.
+
+        Args:
+            path: of the file.
+            samples: rows, evenly spaced in s; without, one for each node.
+
+        Raises:
+            InvalidInput: a file that cannot be written, or fewer than two samples.
+        """
+        rows = self.problem.lattice.divisions + 1
+        if samples is not None:
+            rows = whole_number("samples", samples, at_least=2, at_most=1_000_000)
+        write_csv(Path(path), path_table(self.motion, np.linspace(0.0, 1.0, rows)))
 
     def write_html(self, path: str | Path, title: str = "") -> None:
         """Write one self-contained page that shows the motion; it needs no network."""

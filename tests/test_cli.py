@@ -120,9 +120,31 @@ def test_the_peak_momentum_of_wheels_is_printed_where_there_are_wheels(run, tmp_
     assert "wheel" not in run("plan", "quick.toml").stdout
 
 
+def test_paths_and_trajectories_are_written_as_tables(run, tmp_path):
+    run("plan", "quick.toml", "--out", "results")
+    assert run("export", "results/plan.json", "path.csv", "--samples", 20).exit_code == 0
+    assert len((tmp_path / "path.csv").read_text().splitlines()) == 21
+    fly = ("timed", "results/plan.json", "--thruster-acceleration", 0.01, "--csv", "flown.csv")
+    result = run(*fly)
+    assert result.exit_code == 0, result.output
+    for word in ("duration", "rests on the way", "delta-v", "peak thrust"):
+        assert word in result.stdout
+    before = (tmp_path / "flown.csv").read_bytes()
+    assert before.startswith(b"t [s],s [1],base_x [m]")
+    for again in (("export", "results/plan.json", "path.csv"), fly):
+        refused = run(*again)
+        assert refused.exit_code == 2
+        assert "--force" in refused.stderr
+    assert (tmp_path / "flown.csv").read_bytes() == before
+    assert run(*fly, "--rate", 1, "--force").exit_code == 0
+    assert len((tmp_path / "flown.csv").read_bytes()) < len(before)
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
+        ("export", "missing.json", "path.csv"),
+        ("timed", "quick.toml", "--thruster-acceleration", "0.1"),
         ("plan", "missing.toml"),
         ("plan", "quick.toml", "--planner", "ants"),
         ("plan", "quick.toml", "--seed", "-1"),
@@ -140,6 +162,13 @@ def test_bad_input_is_exit_status_2(run, arguments):
     assert result.exit_code == 2
     assert result.stderr.strip()
     assert "Traceback" not in result.output
+
+
+def test_a_limit_that_is_missing_is_exit_status_2_and_named(run):
+    run("plan", "quick.toml", "--out", "results")
+    result = run("timed", "results/plan.json")
+    assert result.exit_code == 2
+    assert "thruster_acceleration" in result.stderr
 
 
 def test_a_changed_plan_file_does_not_pass_as_verified(run, tmp_path):

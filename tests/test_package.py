@@ -8,7 +8,17 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-HEAVY = ("matplotlib", "meshcat", "yourdfpy", "pydantic", "typer", "rich", "numba", "trimesh")
+HEAVY = (
+    "matplotlib",
+    "meshcat",
+    "yourdfpy",
+    "pydantic",
+    "typer",
+    "rich",
+    "numba",
+    "trimesh",
+    "ruckig",
+)
 
 
 def test_importing_the_package_leaves_heavy_libraries_alone():
