@@ -25,7 +25,8 @@ _KEEN = 0.15  # metres of detour that an ant takes e times less often
 _PERSISTENCE, _LEAST = 0.9, 0.02
 _SHIFTS = 200  # tried on the best ant of a cycle
 _PATIENCE = 30  # cycles without improvement that end the walking
-_ANNEALING = 3000  # shifts for each layer in an annealing
+_ANNEALING = 3000  # shifts for each layer in an annealing, where the arms have to turn the base,
+_PASSING = 1000  # and where they need not loop
 _COLD = 1e-3
 _HEATS = ((1.0, 0.03), (1.0, _COLD), (0.3, _COLD))
 """Temperatures [m] between which the annealings that end the search cool. Whether and how often the
@@ -131,8 +132,9 @@ def search(
                 interrupted = True
                 break
         if not interrupted:
+            shifts = m * (_ANNEALING if lattice.problem.reach_attitude else _PASSING)
             for heats in _HEATS:
-                found, cost = annealed(ground, rng, best, _ANNEALING * m, *heats)
+                found, cost = annealed(ground, rng, best, shifts, *heats)
                 if cost < best_cost - 1e-9:
                     best, best_cost = found, cost
                 records.append((best_cost, cost, cost, 1))
