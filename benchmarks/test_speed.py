@@ -145,6 +145,15 @@ def test_max_min_ant_system_on_21_by_21_nodes(benchmark, spatial, spatial_refere
     record(benchmark, spatial_reference)
 
 
+@pytest.mark.parametrize("name", ["gate", "double_gate"])
+def test_plan_through_a_gate_with_posture_axes(benchmark, name, reference):
+    """Goal attitude met by the arms; the problem is read anew each time."""
+    fp.plan(fp.load_scenario(name))  # compiles
+    plan = benchmark.pedantic(lambda: fp.plan(fp.load_scenario(name), seed=0), rounds=3)
+    benchmark.extra_info["objective"] = plan.objective
+    record(benchmark, reference)
+
+
 def search_anew(problem, planner):
     """Build the roadmap and search it."""
     return planner.search(Roadmap(problem), np.random.default_rng(0))
