@@ -5,7 +5,7 @@
 The planar dual-arm robot turns its base by 5 to 75 degrees, either way, and ends in the posture it
 began with; lengths are held against the dynamic programme of tests/oracle.py. A robot with two arms
 of three joints (tests/spatial.py) turns about five axes. Last, the parts of the search against each
-other. Writes docs/benchmarks/turning.md. The defaults take about half an hour.
+other. Writes docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
 """
 
 import argparse
