@@ -203,7 +203,7 @@ class Plan:
 
     def write_html(self, path: str | Path, title: str = "") -> None:
         """Write one self-contained page that shows the motion; it needs no network."""
-        from ffsr_plan.viewer import page
+        from ffsr_plan.page import page
 
         text = page(self, title)
         try:

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from ffsr_plan import figures
-from ffsr_plan.viewer import page
+from ffsr_plan.page import page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 in_a_browser = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
@@ -109,6 +109,9 @@ def test_a_scene_without_obstacles_can_be_drawn_too(point, tmp_path):
     start, goal = point.configuration(), point.configuration((4, 0, 0))
     plan = fp.plan(fp.Problem(point, fp.Scene(), start, goal, lattice=lattice))
     assert "no obstacle" in page(plan)
+    (subtitle,) = re.findall(r'"subtitle": "(.*?)"', page(plan))
+    assert subtitle.endswith("no obstacles")
+    assert "inf" not in subtitle
     figures.write_figures(plan, tmp_path)
 
 
