@@ -1,7 +1,6 @@
 """The page and the figures: complete, the same every time, and not blank."""
 
 import re
-import shutil
 import subprocess
 
 import numpy as np
@@ -10,17 +9,11 @@ from PIL import Image
 
 from ffsr_plan import figures
 from ffsr_plan.page import page
+from tests import chromium
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+CHROMIUM = chromium.PROGRAM
 in_a_browser = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-FLAGS = [
-    "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
-    "--disable-background-networking", "--disable-component-update", "--use-gl=angle",
-    "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--virtual-time-budget=4000",
-    "--window-size=1280,720",
-]  # fmt: skip
-
-
+FLAGS = [*chromium.FLAGS, "--virtual-time-budget=4000"]
 SCENE = slice(100, 600)  # the rows between the panels
 
 
