@@ -175,6 +175,22 @@ def test_stopping_ends_all_threads_and_frees_the_port():
     server.stop()  # once more does nothing
 
 
+def test_what_was_published_last_is_sent_before_the_end(server):
+    """Even if a listener is still busy with an earlier message when the server is stopped."""
+    gate = threading.Event()
+    server.publish(lambda: "early" if gate.wait(60) else "never")
+    listener = http.client.HTTPConnection("127.0.0.1", port_of(server.url), timeout=60)
+    listener.request("GET", "/events")
+    answer = listener.getresponse()
+    assert server.wait_for_listener(20)
+    stopping = threading.Thread(target=server.stop)
+    server.publish(lambda: "last")
+    stopping.start()
+    gate.set()
+    assert answer.read().decode().split("data: ")[-1] == "last\n\n"
+    stopping.join()
+
+
 def test_two_can_be_shown_at_once():
     with PageServer("one") as one, PageServer("two") as two:
         assert (get(one.url)[1], get(two.url)[1]) == ("one", "two")

@@ -3,13 +3,13 @@
 import re
 import subprocess
 
+import chromium
 import numpy as np
 import pytest
 from PIL import Image
 
 from ffsr_plan import figures
 from ffsr_plan.page import page
-from tests import chromium
 
 CHROMIUM = chromium.PROGRAM
 in_a_browser = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
