@@ -43,6 +43,7 @@ from ffsr_plan.timing import TimedPlan
 from ffsr_plan.wheels import WheelMomentum
 
 if TYPE_CHECKING:
+    from ffsr_plan.live import LiveView
     from ffsr_plan.scenario import Scenario, load_scenario, read_scenario
 
 __version__ = "0.1.0"
@@ -59,6 +60,7 @@ __all__ = [
     "Lattice",
     "LatticeOptimum",
     "LayeredLattice",
+    "LiveView",
     "MaxMinAntSystem",
     "Mount",
     "NoPath",
@@ -90,12 +92,17 @@ __all__ = [
     "robot_summaries",
 ]
 
-_LAZY = ("Scenario", "load_scenario", "read_scenario")  # these need pydantic
+_LAZY = {  # these need pydantic, or a web server
+    "LiveView": "live",
+    "Scenario": "scenario",
+    "load_scenario": "scenario",
+    "read_scenario": "scenario",
+}
 
 
 def __getattr__(name: str) -> object:
     if name in _LAZY:
-        from ffsr_plan import scenario
+        from importlib import import_module
 
-        return getattr(scenario, name)
+        return getattr(import_module(f"ffsr_plan.{_LAZY[name]}"), name)
     raise AttributeError(f"module 'ffsr_plan' has no attribute '{name}'")

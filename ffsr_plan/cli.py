@@ -1,4 +1,4 @@
-"""The command line: `ffsr-plan demo | plan | verify | export | timed | robots`.
+"""The command line: `ffsr-plan demo | plan | verify | view | export | timed | robots`.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
 plan that does not verify, 2 bad input, 130 interrupted without a plan.
@@ -42,6 +42,10 @@ Out = Annotated[
     Path | None, typer.Option(help="Directory for plan.json, plan.html and the figures.")
 ]
 PlanFile = Annotated[Path, typer.Argument(metavar="PLAN.json")]
+Port = Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 for any that is free.")]
+Browser = Annotated[
+    bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace results that are there already.")]
 
 
@@ -103,11 +107,20 @@ def plan(
     check: Annotated[
         bool, typer.Option("--verify/--no-verify", help="Re-check the plan independently.")
     ] = True,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Show the colony at work, then the plan.")
+    ] = False,
+    pace: Annotated[float, typer.Option(help="Least seconds a cycle takes while watched.")] = 0.0,
+    port: Port = 0,
+    browser: Browser = True,
 ) -> None:
     """Plan a scenario, verify the plan, and write it where --out says."""
     with _errors_on_stderr():
         target = _prepared(out, force) if out is not None else None
-        options = Options(planner, seed, refine, colonies, workers, time_limit, duration)
+        if not watch and (port or pace):
+            raise InvalidInput("--watch", False, "--watch together with --port or --pace")
+        watched = Watched(port, browser, pace) if watch else None
+        options = Options(planner, seed, refine, colonies, workers, time_limit, duration, watched)
         _plan_and_report(scenario, options, target, check)
 
 
@@ -181,6 +194,19 @@ def timed(
 
 
 @app.command()
+def view(
+    plan_file: PlanFile,
+    port: Port = 0,
+    browser: Browser = True,
+) -> None:
+    """Show a saved plan in the browser, served on 127.0.0.1 until Ctrl-C."""
+    with _errors_on_stderr():
+        from ffsr_plan.result import Plan
+
+        Plan.load(plan_file).show(port, block=True, open_browser=browser)
+
+
+@app.command()
 def robots() -> None:
     """List the bundled robots, and the arms that `ffsr_plan.compose` mounts on a bus."""
     from ffsr_plan.arms import arm_names
@@ -205,6 +231,14 @@ def main() -> None:
     app()
 
 
+class Watched(NamedTuple):
+    """How the colony is shown while it works."""
+
+    port: int
+    browser: bool
+    pace: float
+
+
 class Options(NamedTuple):
     """What the command line may say otherwise than the scenario."""
 
@@ -215,6 +249,7 @@ class Options(NamedTuple):
     workers: int = 1
     time_limit: float | None = None
     duration: float = 600.0
+    watched: Watched | None = None
 
 
 def _plan_and_report(source: str, options: Options, target: Path | None, check: bool) -> None:
@@ -231,7 +266,7 @@ def _plan_and_report(source: str, options: Options, target: Path | None, check: 
         scenario = scenario._replace(seed=whole_number("--seed", options.seed, at_least=0))
     if options.refine is not None:
         scenario = scenario._replace(refine=options.refine)
-    found = _planned(scenario, options)
+    found = _planned(scenario, options) if options.watched is None else _shown(scenario, options)
     if target is not None:
         _write_results(found, scenario.title, target)
     report = _with_spinner("verifying", found.verify) if check else None
@@ -242,18 +277,41 @@ def _plan_and_report(source: str, options: Options, target: Path | None, check: 
         raise PlanningError("the plan does not verify: " + "; ".join(report.problems))
 
 
-def _planned(scenario: Scenario, options: Options) -> Plan:
+def _shown(scenario: Scenario, options: Options) -> Plan:
+    """Plan while a page shows the colony, and in the end the plan."""
+    from ffsr_plan.live import LiveView
+
+    watched = options.watched
+    assert watched is not None
+    if options.colonies > 1:
+        raise InvalidInput("--watch", f"{options.colonies} colonies", "a single colony to look at")
+    view = LiveView(
+        scenario.problem, watched.port, open_browser=watched.browser, pace=watched.pace,
+        title=scenario.title,
+    )  # fmt: skip
+    with view:
+        err_console.print(f"{view.url} shows the colony at work")
+        found = _planned(scenario, options, view.on_cycle)
+        view.finish(found)
+    return found
+
+
+def _planned(
+    scenario: Scenario, options: Options, on_cycle: Callable[[Cycle], None] | None = None
+) -> Plan:
     """Plan with a progress bar on a terminal, once it has taken a second."""
     from rich.progress import Progress
 
     from ffsr_plan.planner import plan as make_plan
 
-    begin = time.monotonic()
+    begin, followed = time.monotonic(), err_console.is_terminal
     with Progress(console=err_console, transient=True, auto_refresh=False) as progress:
         task = progress.add_task("ants", visible=False)
 
         def show(cycle: Cycle) -> None:
-            if time.monotonic() - begin > 1.0:
+            if on_cycle is not None:
+                on_cycle(cycle)
+            if followed and time.monotonic() - begin > 1.0:
                 progress.update(
                     task,
                     visible=True,
@@ -271,7 +329,7 @@ def _planned(scenario: Scenario, options: Options) -> Plan:
             colonies=options.colonies,
             workers=options.workers,
             time_limit=options.time_limit,
-            on_cycle=show if err_console.is_terminal and options.colonies == 1 else None,
+            on_cycle=show if options.colonies == 1 and (followed or on_cycle) else None,
         )
 
 

@@ -17,7 +17,7 @@ from ffsr_plan.inputs import Array, Flags, IntArray, finite_array, whole_number
 from ffsr_plan.lattice import LayeredLattice
 from ffsr_plan.limits import PerJoint, read_limits
 from ffsr_plan.motion import Motion
-from ffsr_plan.placements import shape_placements
+from ffsr_plan.placements import near_track, shape_placements
 from ffsr_plan.problem import Problem
 from ffsr_plan.roadmap import Certificate
 from ffsr_plan.tables import path_table, write_csv
@@ -25,6 +25,7 @@ from ffsr_plan.timing import TimedPlan, timed
 from ffsr_plan.wheels import WheelMomentum, wheel_momentum
 
 if TYPE_CHECKING:  # these import this module; a plan calls them when asked to
+    from ffsr_plan.server import PageServer
     from ffsr_plan.verify import Report
 
 
@@ -228,11 +229,7 @@ class Plan:
         """
         scene, robot = self.problem.scene, self.problem.robot
         q = self.at(np.linspace(0.0, 1.0, 8 * self.problem.lattice.divisions + 1))
-        track = shape_placements(robot, q).positions.reshape(-1, 3)
-        near = np.zeros(len(scene), dtype=bool)
-        for k, (center, radius) in enumerate(zip(scene.centers, scene.radii, strict=True)):
-            near[k] = np.any(np.linalg.norm(track - center, axis=1) < within + radius)
-        return near
+        return near_track(scene, shape_placements(robot, q).positions, within)
 
     def verify(self, samples: int = 2000) -> Report:
         """Check the plan again, densely and by other code than the planner's; see `verify`.
@@ -298,13 +295,42 @@ class Plan:
 
     def write_html(self, path: str | Path, title: str = "") -> None:
         """Write one self-contained page that shows the motion; it needs no network."""
-        from ffsr_plan.viewer import page
+        from ffsr_plan.page import page
 
         text = page(self, title)
         try:
             Path(path).write_text(text, encoding="utf-8")
         except OSError as error:
             raise InvalidInput("page", str(path), f"a file that can be written ({error})") from None
+
+    def show(
+        self,
+        port: int = 0,
+        *,
+        block: bool | None = None,
+        open_browser: bool | None = None,
+        title: str = "",
+    ) -> PageServer:
+        """Show the page of `write_html`, served on 127.0.0.1 by this process; in notebooks too.
+
+        Args:
+            port: 0 for any that is free.
+            block: whether to go on only after Ctrl-C; by default in scripts, whose end ends the
+                server, and not in notebooks and at prompts.
+            open_browser: whether to open the user's browser; by default unless in a notebook, where
+                the page appears as a frame below the cell.
+            title: as for `write_html`.
+
+        Returns:
+            The server, with its `url`; `stop()`, or the end of a `with` block, ends it.
+
+        Raises:
+            InvalidInput: a port that cannot be had, such as one in use.
+        """
+        from ffsr_plan.browser import serve
+        from ffsr_plan.page import page
+
+        return serve(page(self, title), port, block, open_browser)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):

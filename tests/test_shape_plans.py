@@ -150,7 +150,7 @@ def test_distances_from_hulls_in_the_recheck_agree_with_those_of_trimesh(seed):
 
 def test_a_page_and_pictures_can_be_made_of_all_kinds_of_shapes(arm_plan, tmp_path):
     from ffsr_plan.figures import write_figures
-    from ffsr_plan.viewer import page
+    from ffsr_plan.page import page
 
     assert page(arm_plan) == page(arm_plan)
     assert len(write_figures(arm_plan, tmp_path)) == 3
@@ -170,9 +170,10 @@ def test_links_without_visual_shapes_show_their_collision_shapes(tmp_path):
     assert [robot.link_of(g) for g in robot.visual_model.geometryObjects] == ["base"]
     import meshcat
 
-    from ffsr_plan.viewer import CommandLog, _add_robot
+    from ffsr_plan.drawing import CommandLog
+    from ffsr_plan.viewer import add_robot
 
     log = CommandLog()
-    _add_robot(meshcat.Visualizer(window=log)["robot"], robot, robot.neutral())
+    add_robot(meshcat.Visualizer(window=log)["robot"], robot, robot.neutral())
     # a box in one part, a capsule in three; object and transform of each, and of each joint
     assert len(log.commands) == 2 * (1 + 3) + 2

@@ -1,26 +1,19 @@
 """The page and the figures: complete, the same every time, and not blank."""
 
 import re
-import shutil
 import subprocess
 
+import chromium
 import numpy as np
 import pytest
 from PIL import Image
 
 from ffsr_plan import figures
-from ffsr_plan.viewer import page
+from ffsr_plan.page import page
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+CHROMIUM = chromium.PROGRAM
 in_a_browser = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-FLAGS = [
-    "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
-    "--disable-background-networking", "--disable-component-update", "--use-gl=angle",
-    "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--virtual-time-budget=4000",
-    "--window-size=1280,720",
-]  # fmt: skip
-
-
+FLAGS = [*chromium.FLAGS, "--virtual-time-budget=4000"]
 SCENE = slice(100, 600)  # the rows between the panels
 
 
@@ -109,6 +102,9 @@ def test_a_scene_without_obstacles_can_be_drawn_too(point, tmp_path):
     start, goal = point.configuration(), point.configuration((4, 0, 0))
     plan = fp.plan(fp.Problem(point, fp.Scene(), start, goal, lattice=lattice))
     assert "no obstacle" in page(plan)
+    (subtitle,) = re.findall(r'"subtitle": "(.*?)"', page(plan))
+    assert subtitle.endswith("no obstacles")
+    assert "inf" not in subtitle
     figures.write_figures(plan, tmp_path)
 
 

@@ -192,8 +192,9 @@ class MaxMinAntSystem:
 
 
 def _report(state: State, cycles: int) -> Cycle:
-    from ffsr_plan.colony.max_min_cycle import CYCLE
+    from ffsr_plan.colony.max_min_cycle import CYCLE, settle
 
+    call(settle, state)
     number = int(state.clock[CYCLE])
     best, iteration_best, mean, distinct = map(float, state.records[number - 1])
     counts = np.zeros(state.node_costs.shape, dtype=np.int64)
@@ -204,6 +205,9 @@ def _report(state: State, cycles: int) -> Cycle:
 
 def _trails(state: State) -> Trails:
     """The most walked edges, in the order of layers and nodes."""
+    from ffsr_plan.colony.max_min_cycle import settle
+
+    call(settle, state)
     used = np.flatnonzero(state.walked)
     if len(used) > _TRAILS:
         ants = state.walked.ravel()[used]

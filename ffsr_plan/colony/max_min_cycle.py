@@ -185,6 +185,15 @@ def _update_pheromone(s: State) -> None:
 
 
 @njit(cache=True, nogil=True)
+def settle(s: State) -> None:
+    """Write the level of untouched rows into tau, for readers; the cycles do so late."""
+    for i in range(s.tau.shape[0]):
+        for p in range(s.tau.shape[1]):
+            if not s.touched[i, p]:
+                s.tau[i, p] = s.values[LEVEL]
+
+
+@njit(cache=True, nogil=True)
 def run_cycles(rng: np.random.Generator, until: int, s: State) -> int:
     """Go on until cycle `until` is done, or a path must be proven first.
 
