@@ -34,7 +34,7 @@ from ffsr_plan.robot import SpaceRobot
 REACHED = 1e-8
 """Metres and radians by which a pose may be missed."""
 _STARTS = 16
-_COARSE, _FINE = (1e-4, 30), (1e-15, 200)
+_COARSE, _FINE = (1e-2, 80), (1e-15, 200)
 # relative change of the squared error at which a descent ends, and most poses that it looks at
 _DIFFERENCE = 1e-6  # of joint values, for D
 _HALF_TURN = np.pi - 1e-6  # most that a continuous joint turns: half a turn has two directions

@@ -190,17 +190,34 @@ def test_with_posture_axes_the_arms_bring_base_and_tool_to_the_goal():
     problem = fp.load_scenario("gate")
     robot, lattice = problem.robot, fp.Lattice(20, postures=problem.lattice.postures)
     frame = robot.model.frames[-1].name
-    at_goal, rotation = pose_of(robot, robot.configuration((4, 0, 0), (0.1, 0, 0)), frame)
-    goal = fp.inverse_kinematics(
-        robot, frame, at_goal, angles_of(rotation), start=problem.start, base_position=(4, 0, 0)
-    )
-    wanted = fp.Problem(
-        robot, fp.Scene(), problem.start, goal, lattice=lattice, reach_attitude=True
-    )
+    ahead = robot.configuration((4, 0, 0), (0.1, 0, 0))
+    at_goal, rotation = pose_of(robot, ahead, frame)
+    wanted = fp.Problem(robot, fp.Scene(), problem.start, ahead, lattice=lattice)
+    wanted = wanted.reaching(frame, at_goal, angles_of(rotation))
+    assert wanted.reach_attitude
     plan = fp.plan(wanted, fp.MaxMinAntSystem(cycles=5))
     reached, turned = pose_of(robot, plan.configurations[-1], frame)
     assert reached == pytest.approx(at_goal, abs=1e-6)
     assert np.allclose(turned, rotation, atol=1e-6)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_problem_asks_for_a_pose_with_its_base_where_its_goal_has_it(robot, mode):
+    lattice, start = fp.Lattice(4), robot.configuration(joints={"left_1": -0.6, "left_2": -0.9})
+    there = robot.configuration((2, 0.5, 0), (0.4, 0, 0), joints={"left_1": 0.2})
+    problem = fp.Problem(robot, fp.Scene(), start, there, mode, lattice, delta=0.5)
+    frame, wanted = robot.model.frames[-1].name, (2.6, -0.2, 0.0)
+    if mode == "free-floating":
+        wanted = (0.5, -0.75, 0.0)
+    asked = problem.reaching(frame, wanted, seed=1)
+    end = fp.LayeredLattice(asked).nominal.configurations()[-1]
+    assert pose_of(robot, end, frame)[0] == pytest.approx(wanted, abs=1e-7)
+    if mode != "free-floating":
+        assert np.array_equal(asked.goal[:3], there[:3])
+    if mode == "attitude-held":
+        assert asked.goal[3:7] == pytest.approx(there[3:7], abs=1e-12)
+    assert (asked.delta, asked.mode, asked.lattice) == (0.5, mode, lattice)
+    assert not asked.reach_attitude
 
 
 def test_the_same_seed_gives_the_same_goal():
