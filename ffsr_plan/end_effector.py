@@ -24,12 +24,14 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from ffsr_plan.attitude import from_angles, inverse, log, matrix, multiply
-from ffsr_plan.errors import InvalidInput, PoseOutOfReach, unknown_name
+from ffsr_plan.collision import Nearest, ObstacleQuery, SelfQuery
+from ffsr_plan.errors import GoalInCollision, InvalidInput, PoseOutOfReach, unknown_name
 from ffsr_plan.inputs import FARTHEST, Array, finite_array, frozen, one_of, whole_number
 from ffsr_plan.momentum import connection, generalized_jacobian
 from ffsr_plan.motion import MODES, Motion
 from ffsr_plan.reaction import Reaction
 from ffsr_plan.robot import SpaceRobot
+from ffsr_plan.scene import Scene
 
 REACHED = 1e-8
 """Metres and radians by which a pose may be missed."""
@@ -63,6 +65,7 @@ def inverse_kinematics(
     mode: str = "free-flying",
     base_position: ArrayLike | None = None,
     base_attitude: ArrayLike | None = None,
+    scene: Scene | None = None,
     seed: int = 0,
 ) -> Array:
     """A goal configuration at which a frame has the wanted pose, joint limits kept.
@@ -70,7 +73,7 @@ def inverse_kinematics(
     The configuration is the one that a plan from `start` ends with, on a lattice without posture
     axes; with posture axes, `Problem(..., reach_attitude=True)` brings the base to its attitude.
     The search is local (damped least squares): from the start's joint values, then from others
-    drawn from the seed, until a pose is met. Obstacles and self-collision are not looked at.
+    drawn from the seed, until a pose is met.
 
     Args:
         robot: the robot.
@@ -84,6 +87,8 @@ def inverse_kinematics(
             start's. Not to be given in the mode `free-floating`.
         base_attitude: (3,) where wheels turn the base, ZYX angles [rad]; None to keep the start's.
             In the mode `attitude-held` only.
+        scene: obstacles; with them, joint values at which a link touches one of them, or another
+            link, are passed over. None to look at neither.
         seed: a whole number >= 0.
 
     Returns:
@@ -92,6 +97,7 @@ def inverse_kinematics(
     Raises:
         InvalidInput: an argument that is not allowed.
         PoseOutOfReach: no joint values were found; with what the best ones miss the pose by.
+        GoalInCollision: the pose was met, but always in collision; with the first one found.
     """
     target = _checked(
         robot, frame, position, attitude, start, mode, base_position, base_attitude
@@ -104,6 +110,8 @@ def inverse_kinematics(
     turn = np.where(robot.prismatic, np.inf, np.pi)  # turns beyond only make the way longer
     nearby = np.maximum(low, -turn), np.minimum(high, turn)
     descent = _Descent(target, begin, low, high)
+    touches = _Touches(robot, scene)
+    touched: Nearest | None = None
     best, least = np.zeros(robot.nd), np.inf
     for attempt in range(_STARTS):
         first = np.zeros(robot.nd) if attempt == 0 else rng.uniform(*nearby)
@@ -112,11 +120,17 @@ def inverse_kinematics(
         if missed < least:
             best, least = found, missed
         if missed < REACHED:
-            return frozen(descent.end(found))
+            near = touches(descent.end(found))
+            if near is None:
+                return frozen(descent.end(found))
+            touched = touched or near
     best = descent.run(best, _FINE)
     rest, q = descent.missed(best), descent.end(best)
     if np.linalg.norm(rest) < REACHED:
-        return frozen(q)
+        near = touched or touches(q)
+        if near is None:
+            return frozen(q)
+        raise GoalInCollision(near.link, near.other, -near.distance)
     turned = None if attitude is None else float(np.linalg.norm(rest[3:]))
     raise PoseOutOfReach(frame, float(np.linalg.norm(rest[:3])), turned, frozen(q))
 
@@ -157,6 +171,21 @@ def _checked(
         finite_array("base_position", given, (3,), FARTHEST),
         held,
     )
+
+
+class _Touches:
+    """What a configuration is in collision with, if anything; nothing without a scene."""
+
+    def __init__(self, robot: SpaceRobot, scene: Scene | None) -> None:
+        if scene is not None and not isinstance(scene, Scene):
+            raise InvalidInput("scene", scene, "a Scene, or None")
+        self._queries: list[ObstacleQuery | SelfQuery] = []
+        if scene is not None:
+            self._queries = [ObstacleQuery(robot, scene), SelfQuery(robot)]
+
+    def __call__(self, q: Array) -> Nearest | None:
+        found = (query.nearest(q) for query in self._queries if not query.empty)
+        return next((near for near in found if near.distance <= 0.0), None)
 
 
 class _Descent:

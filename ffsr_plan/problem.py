@@ -127,6 +127,7 @@ class Problem:
         Raises:
             InvalidInput: an argument that is not allowed.
             PoseOutOfReach: with what the best joint values found miss the pose by.
+            GoalInCollision: all joint values found touch an obstacle or the robot itself.
         """
         held = self.mode == "attitude-held"
         goal = inverse_kinematics(
@@ -135,6 +136,7 @@ class Problem:
             mode=self.mode,
             base_position=None if self.mode == "free-floating" else self.goal[:3],
             base_attitude=to_angles(self.goal[3:7]) if held else None,
+            scene=self.scene,
             seed=seed,
         )  # fmt: skip
         return replace(self, goal=goal, reach_attitude=bool(self.lattice.postures) and not held)

@@ -17,7 +17,7 @@ from ffsr_plan.colony import Planner
 from ffsr_plan.end_effector import inverse_kinematics
 from ffsr_plan.errors import InvalidInput, unknown_name
 from ffsr_plan.generators import belt, cloud, gate, scatter, truss
-from ffsr_plan.inputs import Array, number, one_of, whole_number
+from ffsr_plan.inputs import FARTHEST, Array, finite_array, number, one_of, whole_number
 from ffsr_plan.motion import MODES
 from ffsr_plan.planner import PLANNERS
 from ffsr_plan.problem import Problem
@@ -115,9 +115,10 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         )
     with _in_table("start"):
         start = robot.configuration(**file.start.model_dump())
+    base = start[:3] if posed and mode == "free-floating" else _place(file.goal)
+    scene = _scene(file, folder, [start[:3], base])
     with _in_table("goal"):
-        goal = _goal(file.goal, robot, start, mode)
-    scene = _scene(file, folder, [q[:3] for q in (start, goal)])
+        goal = _goal(file.goal, robot, scene, start, mode)
     axes = {
         name: Axis(**axis.model_dump())
         for name in ("lateral", "normal")
@@ -149,13 +150,16 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
     return Scenario(file.title, problem, kind(**settings), seed, wanted.refine)
 
 
-def _goal(table: GoalTable, robot: SpaceRobot, start: Array, mode: str) -> Array:
+def _place(table: GoalTable) -> Array:
+    """(3,) where the base is to go [m]."""
+    return finite_array("goal: position", table.position or (0.0, 0.0, 0.0), (3,), FARTHEST)
+
+
+def _goal(table: GoalTable, robot: SpaceRobot, scene: Scene, start: Array, mode: str) -> Array:
     """The goal configuration (nq,), by inverse kinematics where a pose is given."""
     wanted = table.end_effector
     if wanted is None:
-        return robot.configuration(
-            table.position or (0.0, 0.0, 0.0), table.attitude or (0.0, 0.0, 0.0), table.joints
-        )
+        return robot.configuration(_place(table), table.attitude or (0.0, 0.0, 0.0), table.joints)
     if table.joints:
         raise InvalidInput("joints", table.joints, "none beside end_effector: they follow from it")
     if table.attitude is not None and mode != "attitude-held":
@@ -168,8 +172,9 @@ def _goal(table: GoalTable, robot: SpaceRobot, start: Array, mode: str) -> Array
             robot, wanted.frame, wanted.position, wanted.attitude,
             start=start,
             mode=mode,
-            base_position=None if floats else table.position or (0.0, 0.0, 0.0),
+            base_position=None if floats else _place(table),
             base_attitude=(table.attitude or (0.0, 0.0, 0.0)) if mode == "attitude-held" else None,
+            scene=scene,
             seed=wanted.seed,
         )  # fmt: skip
 

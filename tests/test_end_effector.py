@@ -11,12 +11,15 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.attitude import to_angles
+from ffsr_plan.collision import SelfQuery
 from ffsr_plan.end_effector import _checked, _end, _jacobian, _missed
 from ffsr_plan.motion import MODES, Motion
 from ffsr_plan.robot import robot_from_urdf
 
 seeds = st.integers(0, 100_000)
 UPPER, FORE, SHOULDER = 0.7, 0.5, 0.3
+TIP = "right_link_3"
+FOLDED_IN = {"right_1": -1.7, "right_2": 1.3, "right_3": 1.7}  # the arm is in its own base
 
 
 def pose_of(robot, q, frame):
@@ -232,6 +235,46 @@ def test_the_same_seed_gives_the_same_goal():
     assert np.array_equal(first, again)
 
 
+def two_ways(scene):
+    """The planar arm's tool at a place that it reaches with the elbow on either side."""
+    arm = planar_arm(1e8)
+    start = arm.configuration(joints={"shoulder": 0.4, "elbow": -0.8})
+    return fp.inverse_kinematics(
+        arm, "tool", (SHOULDER + 0.8, 0.0, 0.0), start=start, scene=scene
+    ), arm
+
+
+def test_joint_values_in_collision_are_passed_over():
+    q, arm = two_ways(fp.Scene())
+    elbow, _ = pose_of(arm, q, "fore")
+    assert elbow[1] > 0.0  # the start's side
+    blocked = fp.Scene([0.5 * (elbow + pose_of(arm, q, "tool")[0])], [0.1])
+    assert fp.clearance(arm, blocked, q) < 0.0
+    q, arm = two_ways(blocked)
+    assert pose_of(arm, q, "fore")[0] == pytest.approx(elbow * (1, -1, 1), abs=1e-6)
+    assert fp.clearance(arm, blocked, q) > 0.0
+
+
+def test_joint_values_at_which_links_touch_are_passed_over(robot):
+    inside = robot.configuration(joints=FOLDED_IN)
+    apart = SelfQuery(robot)
+    assert apart.distance(inside) < 0.0
+    given = {"start": inside, "mode": "attitude-held"}
+    place, _ = pose_of(robot, inside, TIP)
+    assert apart.distance(fp.inverse_kinematics(robot, TIP, place, **given)) < 0.0
+    goal = fp.inverse_kinematics(robot, TIP, place, **given, scene=fp.Scene())
+    assert apart.distance(goal) > 0.0
+
+
+def test_a_pose_that_is_met_in_collision_only_is_a_goal_in_collision():
+    scene = fp.Scene([[0.0, 3.0, 0.0], [SHOULDER + 0.8, 0.0, 0.0]], [0.1, 0.1])
+    with pytest.raises(fp.GoalInCollision) as caught:
+        two_ways(scene)
+    assert caught.value.link == "tool"
+    assert caught.value.obstacle == 1
+    assert caught.value.depth == pytest.approx(0.1 + 0.02, abs=1e-6)
+
+
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
@@ -243,6 +286,7 @@ def test_the_same_seed_gives_the_same_goal():
         ({"base_attitude": (0, 0, 0)}, r"base_attitude.*None in the mode free-flying"),
         ({"start": (0, 0, 0)}, r"start"),
         ({"seed": -1}, r"seed.*at least 0"),
+        ({"scene": []}, r"scene: got \[\]; allowed: a Scene, or None"),
     ],
     ids=lambda value: str(value)[:30],
 )

@@ -64,6 +64,32 @@ def test_no_sphere_reaches_farther_beyond_the_mesh_than_stated(name, excess):
     assert np.max(away) > 0.3 * excess  # and the excess is no idle figure
 
 
+def reach_beyond_box(centers, radii, half):
+    """How far the farthest ball reaches beyond a box of half edges `half` about the origin."""
+    beyond = np.abs(centers) - half
+    outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
+    return np.max(outside + np.minimum(beyond.max(axis=1), 0.0) + radii)
+
+
+@given(st.integers(0, 100_000))
+@settings(max_examples=25)
+def test_every_ball_around_a_box_reaches_as_far_as_stated_at_most(seed):
+    """From a middle at depth d, a ball of radius R reaches R - d beyond the box: closed form."""
+    rng = np.random.default_rng(seed)
+    half, angles = rng.uniform(0.1, 0.7, 3), rng.uniform(-1.5, 1.5, 3) * (seed % 2)
+    excess = float(10.0 ** rng.uniform(-1.5, -0.5))
+    scene = fp.Scene.from_mesh(trimesh.creation.box(2.0 * half), excess, attitude=angles)
+    local = scene.centers @ matrix(from_angles(angles))
+    assert 0.45 * excess < reach_beyond_box(local, scene.radii, half) <= excess
+
+
+@pytest.mark.parametrize("cubes", [7, 15, 31, 63])
+def test_balls_that_fit_the_grid_up_to_the_surface_reach_no_farther_than_stated(cubes):
+    half, excess = 0.5 * cubes * 0.1 / np.sqrt(3.0), 0.1  # a larger cube would end at the surface
+    scene = fp.Scene.from_mesh(trimesh.creation.box((2.0 * half,) * 3), excess)
+    assert reach_beyond_box(scene.centers, scene.radii, half) <= excess
+
+
 def test_inner_cubes_are_put_together():
     """Each cube on its own would take twice to three times as many spheres."""
     ball = trimesh.creation.icosphere(3, 1.0)
