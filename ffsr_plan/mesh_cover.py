@@ -92,6 +92,8 @@ def _cubes_at_the_surface(
     triangles: Array, origin: Array, edge: float, counts: IntArray, slack: float
 ) -> IntArray:
     """(m, 3) indices of all cubes of the grid that meet a triangle."""
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    extent = np.max(high - low, axis=1)
     levels = int(np.ceil(np.log2(counts.max())))
     cubes = np.zeros((len(triangles), 3), dtype=np.int64)
     owners = np.arange(len(triangles))
@@ -102,11 +104,14 @@ def _cubes_at_the_surface(
             chunk = slice(begin, begin + _CHUNK // 8)
             parts = (2 * cubes[chunk, None] + _CORNERS).reshape(-1, 3)
             owner = np.repeat(owners[chunk], 8)
-            middles = origin + (parts + 0.5) * size * edge
+            corners = origin + parts * (size * edge)
             meets = np.all(parts * size < counts, axis=1)
-            meets[meets] = _meet(
-                triangles[owner[meets]] - middles[meets, None], 0.5 * size * edge + slack
-            )
+            meets &= np.all(corners - slack <= high[owner], axis=1)
+            meets &= np.all(corners + (size * edge + slack) >= low[owner], axis=1)
+            # boxes around the triangles tell enough as long as cubes are larger than these
+            exact = np.flatnonzero(meets & ((level == 0) | (extent[owner] > size * edge)))
+            middles = corners[exact, None] + 0.5 * size * edge
+            meets[exact] = _meet(triangles[owner[exact]] - middles, 0.5 * size * edge + slack)
             kept.append((parts[meets], owner[meets]))
         cubes = np.concatenate([part for part, _ in kept])
         owners = np.concatenate([owner for _, owner in kept])
