@@ -30,7 +30,7 @@ def variation(name: str, seed: int) -> fp.Problem:
         )
         for x in places
     ]  # fmt: skip
-    scene = fp.Scene(np.vstack([p.centers for p in parts]), np.hstack([p.radii for p in parts]))
+    scene = sum(parts, fp.Scene())
     yaw = math.radians(rng.uniform(-10.0, 10.0))
     goal = problem.robot.configuration((10.0, 0.0, 0.0), (yaw, 0.0, 0.0))
     return replace(problem, scene=scene, goal=goal)

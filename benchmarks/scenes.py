@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
+from ffsr_plan.generators import scatter
 from ffsr_plan.optimum import lattice_optimum
 
 FIRST_SEED = 1000
@@ -33,15 +34,10 @@ class Case(NamedTuple):
 
 def random_problem(seed: int, delta: float, lattice: fp.Lattice = LATTICE) -> fp.Problem:
     """The random scene of a seed; the same for every delta and lattice."""
-    rng = np.random.default_rng(seed)
-    count = int(rng.integers(4, 12))
-    x = rng.uniform(1.8, 8.2, count)
-    y = rng.uniform(-3.0, 3.0, count)
-    radii = rng.uniform(0.15, 0.5, count)
     ends = _ends()
     return fp.Problem(
         ends.robot,
-        fp.Scene(np.stack([x, y, np.zeros(count)], axis=1), radii),
+        scatter(seed, (4, 11), (1.8, -3.0), (8.2, 3.0), (0.15, 0.5)),
         ends.start,
         ends.goal,
         delta=delta,

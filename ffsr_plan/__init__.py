@@ -20,6 +20,7 @@ from ffsr_plan.collision import Clearance, clearance
 from ffsr_plan.colony import AntSystem, MaxMinAntSystem
 from ffsr_plan.composition import Mount, compose
 from ffsr_plan.edge_proof import EdgeProof, certify_edge
+from ffsr_plan.end_effector import inverse_kinematics
 from ffsr_plan.errors import (
     AttitudeOutOfReach,
     FfsrPlanError,
@@ -27,6 +28,7 @@ from ffsr_plan.errors import (
     InvalidInput,
     NoPath,
     PlanningError,
+    PoseOutOfReach,
     StartInCollision,
     UnprovenPath,
 )
@@ -67,6 +69,7 @@ __all__ = [
     "Panel",
     "Plan",
     "PlanningError",
+    "PoseOutOfReach",
     "PostureAxis",
     "Problem",
     "Roadmap",
@@ -82,6 +85,7 @@ __all__ = [
     "certify_edge",
     "clearance",
     "compose",
+    "inverse_kinematics",
     "load_robot",
     "load_scenario",
     "momentum",

@@ -1,4 +1,4 @@
-"""The command line: `ffsr-plan demo | plan | verify | view | export | timed | robots`.
+"""The command line: `ffsr-plan demo | plan | verify | view | export | timed | robots | schema`.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
 plan that does not verify, 2 bad input, 130 interrupted without a plan.
@@ -224,6 +224,16 @@ def robots() -> None:
         )
     out_console.print(table)
     out_console.print(f"Arms for a bus of your own: {', '.join(arm_names())}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of scenario files, for editors that complete and check TOML."""
+    import json
+
+    from ffsr_plan.scenario_tables import schema as scenario_schema
+
+    typer.echo(json.dumps(scenario_schema(), indent=2))
 
 
 def main() -> None:

@@ -6,6 +6,9 @@ import difflib
 import math
 from collections.abc import Iterable
 
+import numpy as np
+from numpy.typing import NDArray
+
 _NAMED = 12  # obstacles in a message
 
 
@@ -125,6 +128,41 @@ class AttitudeOutOfReach(PlanningError):  # noqa: N818 - so are the names of its
 
     def __reduce__(self) -> tuple[type, tuple[float, float]]:
         return type(self), (self.wanted, self.missed)
+
+
+class PoseOutOfReach(PlanningError):  # noqa: N818
+    """No joint values were found that bring a frame to the wanted pose.
+
+    Attributes:
+        frame: name of the frame.
+        position_missed: distance from the wanted position at the best configuration found [m].
+        attitude_missed: angle from the wanted attitude there [rad], or None if any would do.
+        configuration: (nq,) the best configuration found: a metre counts as much as a radian.
+    """
+
+    def __init__(
+        self,
+        frame: str,
+        position_missed: float,
+        attitude_missed: float | None,
+        configuration: NDArray[np.float64],
+    ) -> None:
+        self.frame = frame
+        self.position_missed = position_missed
+        self.attitude_missed = attitude_missed
+        self.configuration = configuration
+        turned = ""
+        if attitude_missed is not None:
+            turned = f" and {attitude_missed:.4g} rad ({math.degrees(attitude_missed):.3g} degrees)"
+        super().__init__(
+            f"pose out of reach: the best that was found for frame '{frame}' misses it by "
+            f"{position_missed:.4g} m{turned}; another base position or attitude may reach it"
+        )
+
+    def __reduce__(self) -> tuple[type, tuple[str, float, float | None, NDArray[np.float64]]]:
+        return type(self), (
+            self.frame, self.position_missed, self.attitude_missed, self.configuration
+        )  # fmt: skip
 
 
 class UnprovenPath(PlanningError):  # noqa: N818

@@ -42,6 +42,7 @@ def to_dict(plan: Plan) -> dict[str, Any]:
             "scene": {
                 "centers": problem.scene.centers.tolist(),
                 "radii": problem.scene.radii.tolist(),
+                "excess": problem.scene.excess,
             },
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),
@@ -130,7 +131,11 @@ def from_dict(data: dict[str, Any]) -> Plan:
     axes = {k: Axis(**lattice[k]) for k in ("lateral", "normal") if lattice[k] is not None}
     problem = Problem(
         _robot_from_dict(given["robot"]),
-        Scene(given["scene"]["centers"], given["scene"]["radii"]),
+        Scene(
+            given["scene"]["centers"],
+            given["scene"]["radii"],
+            given["scene"].get("excess", 0.0),  # older files have none
+        ),
         start=given["start"],
         goal=given["goal"],
         lattice=Lattice(

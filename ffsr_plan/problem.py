@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ffsr_plan.attitude import angle_between
+from ffsr_plan.attitude import angle_between, to_angles
 from ffsr_plan.axes import Lattice
+from ffsr_plan.end_effector import inverse_kinematics
 from ffsr_plan.errors import InvalidInput
 from ffsr_plan.inputs import Array, frozen, number, one_of, truth
 from ffsr_plan.motion import MODES
@@ -108,6 +109,37 @@ class Problem:
         for name, value in values.items():
             object.__setattr__(self, name, value)
         self._check_that_something_is_to_be_done()
+
+    def reaching(
+        self, frame: str, position: ArrayLike, attitude: ArrayLike | None = None, *, seed: int = 0
+    ) -> Problem:
+        """The same problem with a goal at which a frame has the wanted pose.
+
+        The base goes where the goal has it now, as far as the mode prescribes it; on a lattice
+        with posture axes it has to reach the attitude that follows. See `inverse_kinematics`.
+
+        Args:
+            frame: name of a link, joint or other frame of the model.
+            position: (3,) wanted for the frame's origin, world [m].
+            attitude: (3,) wanted for the frame, ZYX angles [rad]; None if any will do.
+            seed: a whole number >= 0.
+
+        Raises:
+            InvalidInput: an argument that is not allowed.
+            PoseOutOfReach: with what the best joint values found miss the pose by.
+            GoalInCollision: all joint values found touch an obstacle or the robot itself.
+        """
+        held = self.mode == "attitude-held"
+        goal = inverse_kinematics(
+            self.robot, frame, position, attitude,
+            start=self.start,
+            mode=self.mode,
+            base_position=None if self.mode == "free-floating" else self.goal[:3],
+            base_attitude=to_angles(self.goal[3:7]) if held else None,
+            scene=self.scene,
+            seed=seed,
+        )  # fmt: skip
+        return replace(self, goal=goal, reach_attitude=bool(self.lattice.postures) and not held)
 
     @property
     def travel(self) -> Array:

@@ -3,159 +3,39 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Any, NamedTuple
 
-import numpy as np
 import pydantic
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel
 
 from ffsr_plan import bundled
 from ffsr_plan.axes import Axis, Lattice, PostureAxis
-from ffsr_plan.colony import MaxMinAntSystem, Planner
+from ffsr_plan.colony import Planner
+from ffsr_plan.end_effector import inverse_kinematics
 from ffsr_plan.errors import InvalidInput, unknown_name
-from ffsr_plan.generators import cloud
-from ffsr_plan.inputs import one_of, whole_number
+from ffsr_plan.generators import belt, cloud, gate, scatter, truss
+from ffsr_plan.inputs import FARTHEST, Array, finite_array, number, one_of, whole_number
 from ffsr_plan.motion import MODES
-from ffsr_plan.paper import DIVISIONS
 from ffsr_plan.planner import PLANNERS
 from ffsr_plan.problem import Problem
-from ffsr_plan.robot import load_robot
+from ffsr_plan.robot import SpaceRobot, load_robot
+from ffsr_plan.scenario_tables import (
+    OBSTACLES,
+    OF_A_MESH,
+    GoalTable,
+    ObstacleTable,
+    PostureTable,
+    ScenarioFile,
+)
 from ffsr_plan.scene import Scene
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
-
-Number = Annotated[float, Field(allow_inf_nan=False)]
-Triple = Annotated[list[Number], Field(min_length=3, max_length=3)]
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
-
-
-class RobotTable(_Table):
-    """The table `[robot]`."""
-
-    urdf: str
-    """Name of a bundled robot, or a path relative to the scenario file."""
-    mode: str = MODES[0]
-    package_dirs: list[str] = []
-    srdf: str | None = None
-    """Path of an SRDF, relative to the scenario file."""
-    meshes: str = "hull"
-    cylinders: str = "hull"
-
-
-class PoseTable(_Table):
-    """The table `[start]`."""
-
-    position: Triple = [0.0, 0.0, 0.0]
-    attitude: Triple = [0.0, 0.0, 0.0]
-    """ZYX angles alpha, beta, gamma [rad]."""
-    joints: dict[str, Number] = {}
-    """Joints that are not named are at zero."""
-
-
-class GoalTable(_Table):
-    """The table `[goal]`."""
-
-    position: Triple | None = None
-    """At the world's origin if not given; not to be given in the mode free-floating."""
-    attitude: Triple | None = None
-    joints: dict[str, Number] = {}
-
-
-class ObstacleTable(_Table):
-    """The table `[[obstacles]]`."""
-
-    center: Triple
-    radius: Number
-
-
-class CloudTable(_Table):
-    """The table `[[clouds]]`: spheres drawn from a seed."""
-
-    seed: int
-    count: int
-    low: Triple
-    high: Triple
-    radii: Annotated[list[Number], Field(min_length=2, max_length=2)]
-    spared: Number = 0.0
-    """No sphere comes nearer than this to the base at start or goal [m]."""
-
-
-class AxisTable(_Table):
-    """The tables `lateral` and `normal`."""
-
-    half_count: int
-    spacing: Number
-
-
-class PostureTable(_Table):
-    """An entry of `postures`: `towards` and `levels`, or `joints`, `half_count` and `spacing`."""
-
-    towards: str | None = None
-    levels: int | None = None
-    joints: dict[str, Number] | None = None
-    half_count: int | None = None
-    spacing: Number | None = None
-
-
-class LatticeTable(_Table):
-    """The table `[lattice]`."""
-
-    divisions: int = DIVISIONS
-    lateral: AxisTable | None = None
-    normal: AxisTable | None = None
-    postures: list[PostureTable] = []
-
-
-class ObjectiveTable(_Table):
-    """The table `[objective]`."""
-
-    delta: Number = 0.0
-    length_unit: Number = 1.0
-    clearance_cap: Number | None = None
-    position_weight: Number = 1.0
-    rotation_weight: Number = 1.0
-
-
-class PlannerTable(_Table):
-    """The table `[planner]`: what is not given stays at the planner's default."""
-
-    name: str = MaxMinAntSystem.name
-    seed: int = 0
-    refine: bool = True
-    ants: int | None = None
-    cycles: int | None = None
-    alpha: Number | None = None
-    beta: Number | None = None
-    rho: Number | None = None
-    Q: Number | None = None
-    C: Number | None = None
-    improved: int | None = None
-    patience: int | None = None
-    cost_aware: bool | None = None
-    pheromone: bool | None = None
-
-
-class ScenarioFile(_Table):
-    """A whole scenario file."""
-
-    title: str = ""
-    robot: RobotTable
-    start: PoseTable = PoseTable()
-    goal: GoalTable
-    obstacles: list[ObstacleTable] = []
-    clouds: list[CloudTable] = []
-    lattice: LatticeTable
-    objective: ObjectiveTable = ObjectiveTable()
-    planner: PlannerTable = PlannerTable()
 
 
 class Scenario(NamedTuple):
@@ -218,6 +98,7 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         cylinders=file.robot.cylinders,
     )
     mode = one_of("robot.mode", file.robot.mode, MODES)
+    posed = file.goal.end_effector is not None
     reach = file.goal.attitude is not None and mode != "attitude-held"
     if reach and not file.lattice.postures:
         raise InvalidInput(
@@ -234,19 +115,10 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         )
     with _in_table("start"):
         start = robot.configuration(**file.start.model_dump())
+    base = start[:3] if posed and mode == "free-floating" else _place(file.goal)
+    scene = _scene(file, folder, [start[:3], base])
     with _in_table("goal"):
-        goal = robot.configuration(
-            file.goal.position or (0.0, 0.0, 0.0),
-            file.goal.attitude or (0.0, 0.0, 0.0),
-            file.goal.joints,
-        )
-    with _in_table("obstacles"):
-        scenes = [Scene([o.center for o in file.obstacles], [o.radius for o in file.obstacles])]
-    for number, table in enumerate(file.clouds):
-        spared = [(q[:3], table.spared) for q in (start, goal)]
-        with _in_table(f"clouds.{number}"):
-            scenes.append(cloud(**table.model_dump(exclude={"spared"}), spared=spared))
-    scene = Scene(np.vstack([s.centers for s in scenes]), np.hstack([s.radii for s in scenes]))
+        goal = _goal(file.goal, robot, scene, start, mode)
     axes = {
         name: Axis(**axis.model_dump())
         for name in ("lateral", "normal")
@@ -264,7 +136,7 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
             normal=axes.get("normal"),
             postures=[_posture_axis(k, table) for k, table in enumerate(file.lattice.postures)],
         ),
-        reach_attitude=reach,
+        reach_attitude=reach or bool(posed and file.lattice.postures and mode != "attitude-held"),
         **file.objective.model_dump(),
     )
     wanted = file.planner
@@ -278,14 +150,83 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
     return Scenario(file.title, problem, kind(**settings), seed, wanted.refine)
 
 
-def _posture_axis(number: int, table: PostureTable) -> PostureAxis:
+def _place(table: GoalTable) -> Array:
+    """(3,) where the base is to go [m]."""
+    return finite_array("goal: position", table.position or (0.0, 0.0, 0.0), (3,), FARTHEST)
+
+
+def _goal(table: GoalTable, robot: SpaceRobot, scene: Scene, start: Array, mode: str) -> Array:
+    """The goal configuration (nq,), by inverse kinematics where a pose is given."""
+    wanted = table.end_effector
+    if wanted is None:
+        return robot.configuration(_place(table), table.attitude or (0.0, 0.0, 0.0), table.joints)
+    if table.joints:
+        raise InvalidInput("joints", table.joints, "none beside end_effector: they follow from it")
+    if table.attitude is not None and mode != "attitude-held":
+        raise InvalidInput(
+            "attitude", table.attitude, f"none beside end_effector in the mode {mode}"
+        )
+    floats = mode == "free-floating"
+    with _in_table("end_effector"):
+        return inverse_kinematics(
+            robot, wanted.frame, wanted.position, wanted.attitude,
+            start=start,
+            mode=mode,
+            base_position=None if floats else _place(table),
+            base_attitude=(table.attitude or (0.0, 0.0, 0.0)) if mode == "attitude-held" else None,
+            scene=scene,
+            seed=wanted.seed,
+        )  # fmt: skip
+
+
+def _scene(file: ScenarioFile, folder: Path, ends: list[Array]) -> Scene:
+    """All obstacles; `ends` (3,) are what clouds and belts spare."""
+    scene = Scene()
+    for place, obstacle in enumerate(file.obstacles):
+        scene += _obstacle(f"obstacles.{place}", obstacle, folder)
+    makers: dict[str, Callable[..., Scene]] = {
+        "clouds": cloud, "belts": belt, "scatters": scatter, "trusses": truss, "gates": gate,
+    }  # fmt: skip
+    for name, make in makers.items():
+        for place, table in enumerate(getattr(file, name)):
+            given = table.model_dump()
+            if "spared" in given:
+                given["spared"] = [(end, table.spared) for end in ends]
+            with _in_table(f"{name}.{place}"):
+                scene += make(**given)
+    return scene
+
+
+def _obstacle(where: str, table: ObstacleTable, folder: Path) -> Scene:
+    given = table.model_dump(exclude_none=True)
+    kinds = [name for name in OBSTACLES if name in given]
+    kind = "center" if not kinds and "radius" in given else kinds[0] if len(kinds) == 1 else None
+    if kind is None:
+        raise InvalidInput(where, ", ".join(given) or "no key", f"one of {', '.join(OBSTACLES)}")
+    for name in (kind, *OBSTACLES[kind]):
+        if name not in given:
+            raise InvalidInput(f"{where}.{name}", None, "this key is required")
+    known = [kind, *OBSTACLES[kind], *(OF_A_MESH if kind == "mesh" else ())]
+    for name in given:
+        if name not in known:
+            raise InvalidInput(f"{where}.{name}", given[name], f"not beside {kind}")
+    if kind == "center":
+        return Scene([given["center"]], [number(f"{where}.radius", given["radius"], above=0.0)])
+    path = folder / given.pop(kind)
+    with _in_table(where):
+        if kind == "mesh":
+            return Scene.from_mesh(path, **given)
+        return Scene.from_csv(path) if kind == "csv" else Scene.from_numpy(path)
+
+
+def _posture_axis(place: int, table: PostureTable) -> PostureAxis:
     given = table.model_dump(exclude_none=True)
     if set(given) == {"towards", "levels"}:
         return PostureAxis.towards(given["towards"], given["levels"])
     if set(given) == {"joints", "half_count", "spacing"}:
         return PostureAxis(**given)
     raise InvalidInput(
-        f"lattice.postures.{number}",
+        f"lattice.postures.{place}",
         ", ".join(given) or "nothing",
         "either towards and levels, or joints, half_count and spacing",
     )

@@ -86,7 +86,7 @@ MISTAKES = [
     ("[6, 0, 0]", "[6, 0]", r"goal\.position.*got \[6, 0\]"),
     ("delta = 2.0", "delta = nan", r"objective\.delta.*got nan"),
     ("radius = 0.3", "", r"obstacles\.0\.radius.*required"),
-    ("radius = 0.3", "radius = 0.0", r"obstacles: scene radii\[0\].*greater than 0"),
+    ("radius = 0.3", "radius = 0.0", r"obstacles\.0\.radius: got 0\.0.*greater than 0"),
     ("divisions = 12", "divisions = 1", r"divisions.*at least 2"),
     ("half_count = 6", "half_count = 0", r"half_count.*at least 1"),
     ("delta = 2.0", "delta = -2.0", r"delta.*at least 0"),
