@@ -1,5 +1,6 @@
 """The documentation site as it is built: whole, without warnings, and without the network."""
 
+import json
 import re
 import subprocess
 import sys
@@ -87,6 +88,19 @@ def test_links_inside_the_site_and_their_anchors_exist(site):
 def test_every_public_name_has_an_entry(site):
     anchors = {a for name, page in site.items() if name.startswith("api/") for a in page.anchors}
     assert {f"ffsr_plan.{name}" for name in fp.__all__} <= anchors
+
+
+def test_notebooks_show_the_outputs_that_are_stored_in_them(site):
+    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    assert notebooks
+    for path in notebooks:
+        cells = json.loads(path.read_text())["cells"]
+        shown = [set(o.get("data", {})) for cell in cells for o in cell.get("outputs", [])]
+        loaded = site[f"notebooks/{path.stem}.html"].loaded
+        for kind, ending in {"image/png": ".png", "text/html": ".html"}.items():
+            assert sum(kind in data for data in shown) == sum(
+                address.startswith(path.stem) and address.endswith(ending) for address in loaded
+            )
 
 
 def test_equations_are_drawn_without_a_script(site):
