@@ -16,6 +16,7 @@ from tests.pages import ROOT
 pytest.importorskip("mkdocs", reason="the extra 'docs' is not installed")
 pytestmark = pytest.mark.slow
 
+VERBATIM = ("code", "script", "style")
 # what makes a browser load something, and from where
 LOADED = {"script": "src", "img": "src", "iframe": "src", "link": "href"}
 
@@ -27,10 +28,18 @@ class Page(HTMLParser):
         super().__init__()
         self.links, self.loaded, self.anchors = [], [], set()
         self.equations = self.unfinished = 0
+        self._code = 0
         self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_data(self, data):
+        self.unfinished += "$" in data and not self._code
+
+    def handle_endtag(self, tag):
+        self._code -= tag in VERBATIM
 
     def handle_starttag(self, tag, attrs):
         given = dict(attrs)
+        self._code += tag in VERBATIM
         self.anchors.add(given.get("id"))
         self.equations += tag == "math"
         self.unfinished += "arithmatex" in (given.get("class") or "")
