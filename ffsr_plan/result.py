@@ -137,7 +137,7 @@ class Plan:
 
         Args:
             duration: of the whole motion [s].
-            times: (N,) in [0, duration] [s]; without, 1001 evenly spaced.
+            times: (N,) from 0 to the duration [s]; without, 1001 evenly spaced.
 
         Raises:
             InvalidInput: another mode (there are no wheels), or a duration or times that cannot be.
