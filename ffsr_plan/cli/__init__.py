@@ -1,0 +1,6 @@
+"""The command line."""
+
+from ffsr_plan.cli.commands import app, main
+from ffsr_plan.cli.files import RESULTS
+
+__all__ = ["RESULTS", "app", "main"]

@@ -1,0 +1,227 @@
+"""The command line: `ffsr-plan demo | plan | verify | view | export | timed | robots | schema`.
+
+Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
+plan that does not verify, 2 bad input, 130 interrupted without a plan.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.table import Table
+
+from ffsr_plan.cli.files import prepared, refuse_to_replace, unused
+from ffsr_plan.cli.planning import Options, Watched, plan_and_report
+from ffsr_plan.cli.tables import flight_rows, report_table
+from ffsr_plan.cli.terminal import errors_on_stderr, out_console, with_spinner
+from ffsr_plan.errors import InvalidInput, PlanningError
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Collision-free motions of free-flying space robots, base reaction included.",
+)
+
+Out = Annotated[
+    Path | None, typer.Option(help="Directory for plan.json, plan.html and the figures.")
+]
+PlanFile = Annotated[Path, typer.Argument(metavar="PLAN.json")]
+Port = Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 for any that is free.")]
+Browser = Annotated[
+    bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace results that are there already.")]
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        out_console.print(f"ffsr-plan {version('ffsr-plan')}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Say the version and stop."
+        ),
+    ] = False,
+) -> None:
+    """Options that stand before a command."""
+
+
+@app.command()
+def demo(out: Out = None, force: Force = False) -> None:
+    """Plan, verify and show the scene of the paper's Fig. 2(a) with the default planner."""
+    with errors_on_stderr():
+        target = prepared(out, force) if out is not None else unused(Path("ffsr-demo"))
+        options = Options(planner="max-min-ant-system", refine=True)
+        plan_and_report("fig2a", options, target, check=True)
+
+
+@app.command()
+def plan(
+    scenario: Annotated[str, typer.Argument(help="A TOML file, or a bundled name such as fig2b.")],
+    planner: Annotated[
+        str | None, typer.Option(help="Use this planner, at its defaults, not the scenario's.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="Seed, instead of the scenario's.")] = None,
+    refine: Annotated[
+        bool | None,
+        typer.Option("--refine/--no-refine", help="Move the path off the lattice in the end."),
+    ] = None,
+    colonies: Annotated[int, typer.Option(help="Independent colonies; the best counts.")] = 1,
+    workers: Annotated[int, typer.Option(help="Processes for them.")] = 1,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(help="Stop searching after so many seconds; refinement comes on top."),
+    ] = None,
+    out: Out = None,
+    force: Force = False,
+    duration: Annotated[
+        float,
+        typer.Option(
+            help="Seconds that the motion takes, for the peak momentum of the wheels "
+            "(attitude-held plans only; it goes as 1 / duration)."
+        ),
+    ] = 600.0,
+    check: Annotated[
+        bool, typer.Option("--verify/--no-verify", help="Re-check the plan independently.")
+    ] = True,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Show the colony at work, then the plan.")
+    ] = False,
+    pace: Annotated[float, typer.Option(help="Least seconds a cycle takes while watched.")] = 0.0,
+    port: Port = 0,
+    browser: Browser = True,
+) -> None:
+    """Plan a scenario, verify the plan, and write it where --out says."""
+    with errors_on_stderr():
+        target = prepared(out, force) if out is not None else None
+        if not watch and (port or pace):
+            raise InvalidInput("--watch", False, "--watch together with --port or --pace")
+        watched = Watched(port, browser, pace) if watch else None
+        options = Options(planner, seed, refine, colonies, workers, time_limit, duration, watched)
+        plan_and_report(scenario, options, target, check)
+
+
+@app.command()
+def verify(
+    plan_file: PlanFile,
+    samples: Annotated[int, typer.Option(help="Distance checks per edge.")] = 2000,
+) -> None:
+    """Check a saved plan again, densely and independently of the planner."""
+    with errors_on_stderr():
+        from ffsr_plan.result import Plan
+
+        loaded = Plan.load(plan_file)
+        report = with_spinner("verifying", lambda: loaded.verify(samples))
+        out_console.print(report_table(report))
+        if not report.ok:
+            raise PlanningError("the plan does not verify: " + "; ".join(report.problems))
+
+
+@app.command()
+def export(
+    plan_file: PlanFile,
+    table: Annotated[Path, typer.Argument(metavar="PATH.csv")],
+    samples: Annotated[
+        int | None, typer.Option(help="Rows, evenly spaced; without, one for each node.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Write the path of a saved plan as a table, units in its header."""
+    with errors_on_stderr():
+        from ffsr_plan.result import Plan
+
+        refuse_to_replace("PATH.csv", table, force)
+        Plan.load(plan_file).to_csv(table, samples)
+
+
+@app.command()
+def timed(
+    plan_file: PlanFile,
+    joint_acceleration: Annotated[float | None, typer.Option(help="rad/s^2 or m/s^2")] = None,
+    thruster_acceleration: Annotated[float | None, typer.Option(help="m/s^2")] = None,
+    joint_velocity: Annotated[float | None, typer.Option(help="rad/s or m/s; the URDF's")] = None,
+    base_velocity: Annotated[float | None, typer.Option(help="m/s")] = None,
+    joint_torque: Annotated[float | None, typer.Option(help="N m or N")] = None,
+    joint_jerk: Annotated[float | None, typer.Option(help="rad/s^3 or m/s^3")] = None,
+    thruster_jerk: Annotated[float | None, typer.Option(help="m/s^3")] = None,
+    turn_velocity: Annotated[float | None, typer.Option(help="rad/s")] = None,
+    turn_acceleration: Annotated[float | None, typer.Option(help="rad/s^2")] = None,
+    velocity_jump: Annotated[
+        float, typer.Option(help="Pass corners of the base's path by pulses of so many m/s.")
+    ] = 0.0,
+    csv: Annotated[Path | None, typer.Option(help="Write the trajectory to this table.")] = None,
+    rate: Annotated[float, typer.Option(help="Instants a second.")] = 10.0,
+    force: Force = False,
+) -> None:
+    """Fly a saved plan as fast as limits allow: duration, delta-v, thrust, torques."""
+    given = {k: v for k, v in locals().items() if k not in ("plan_file", "csv", "rate", "force")}
+    with errors_on_stderr():
+        from ffsr_plan.result import Plan
+
+        if csv is not None:
+            refuse_to_replace("--csv", csv, force)
+        flown = Plan.load(plan_file).timed(**given)
+        summary = Table(show_header=False)
+        for name, value in flight_rows(flown, rate):
+            summary.add_row(name, value)
+        out_console.print(summary)
+        if csv is not None:
+            flown.to_csv(csv, rate)
+
+
+@app.command()
+def view(
+    plan_file: PlanFile,
+    port: Port = 0,
+    browser: Browser = True,
+) -> None:
+    """Show a saved plan in the browser, served on 127.0.0.1 until Ctrl-C."""
+    with errors_on_stderr():
+        from ffsr_plan.result import Plan
+
+        Plan.load(plan_file).show(port, block=True, open_browser=browser)
+
+
+@app.command()
+def robots() -> None:
+    """List the bundled robots, and the arms that `ffsr_plan.compose` mounts on a bus."""
+    from ffsr_plan.arms import arm_names
+    from ffsr_plan.catalog import robot_summaries
+
+    table = Table("robot", "kg", "reach", "postures", "joints", show_lines=True)
+    for robot in robot_summaries():
+        count = len(robot.joint_names)
+        table.add_row(
+            f"{robot.name}\n{count} joint{'' if count == 1 else 's'}",
+            f"{robot.mass:.4g}",
+            f"{robot.reach:.2f} m",
+            "\n".join(robot.postures),
+            "\n".join(robot.joint_names),
+        )
+    out_console.print(table)
+    out_console.print(f"Arms for a bus of your own: {', '.join(arm_names())}")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of scenario files, for editors that complete and check TOML."""
+    import json
+
+    from ffsr_plan.scenario_tables import schema as scenario_schema
+
+    typer.echo(json.dumps(scenario_schema(), indent=2))
+
+
+def main() -> None:
+    """Entry point of the `ffsr-plan` command."""
+    app()
