@@ -1,8 +1,9 @@
-"""The bundled scenarios in three dimensions: through a ring, and turned by the arms alone."""
+"""The bundled scenarios in three dimensions: a ring, a turn by the arms alone, a truss."""
 
 from dataclasses import replace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import ffsr_plan as fp
@@ -42,3 +43,20 @@ def test_arms_alone_turn_a_floating_satellite_about_an_axis_askew():
     assert attitude.angle_between(end[3:7], problem.goal[3:7]) < 1e-3
     assert np.degrees(attitude.angle_between(begin[3:7], end[3:7])) == pytest.approx(20.0, abs=2)
     assert end[7:] == pytest.approx(begin[7:], abs=1e-9)
+
+
+def test_the_satellite_flies_along_the_truss_and_its_tool_arrives():
+    problem = fp.load_scenario("inspection")
+    plan = fp.plan(problem, seed=0)
+    report = plan.verify(100)
+    assert report.ok, report.problems
+    assert report.momentum_residual <= 1e-9
+    assert plan.optimum_is_exact
+    assert plan.gap < 1e-3
+    model = problem.robot.model
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, plan.configurations[-1])
+    tool = data.oMf[model.getFrameId("arm_tool0")].translation
+    assert tool == pytest.approx([10.6, 0.3, 1.6], abs=1e-6)
+    turned = attitude.angle_between(plan.configurations[0, 3:7], plan.configurations[-1, 3:7])
+    assert turned > 0.02  # the base reacts, and the goal was solved for with that
