@@ -7,12 +7,12 @@ import re
 import shlex
 
 import pytest
+from pages import PAGES, ROOT, blocks, title
 from typer.testing import CliRunner
 
 import ffsr_plan as fp
 from ffsr_plan.cli import app
 from ffsr_plan.scenario import ScenarioFile
-from tests.pages import PAGES, ROOT, blocks, title
 
 _LINK = re.compile(r"\]\((?!https?://|#)(?P<path>[^)#\s]+)(?:#[^)]*)?\)")
 

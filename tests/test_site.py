@@ -9,9 +9,9 @@ from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
 import pytest
+from pages import ROOT
 
 import ffsr_plan as fp
-from tests.pages import ROOT
 
 pytest.importorskip("mkdocs", reason="the extra 'docs' is not installed")
 pytestmark = pytest.mark.slow
