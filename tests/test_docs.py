@@ -5,6 +5,7 @@ import contextlib
 import io
 import re
 import shlex
+import webbrowser
 
 import pytest
 from pages import PAGES, ROOT, blocks, title
@@ -13,6 +14,7 @@ from typer.testing import CliRunner
 import ffsr_plan as fp
 from ffsr_plan.cli import app
 from ffsr_plan.scenario import ScenarioFile
+from ffsr_plan.server import PageServer
 
 _LINK = re.compile(r"\]\((?!https?://|#)(?P<path>[^)#\s]+)(?:#[^)]*)?\)")
 
@@ -24,6 +26,17 @@ def with_blocks(*kinds):
         for page in PAGES
         if blocks(page, *kinds)
     ]
+
+
+@pytest.fixture(autouse=True)
+def nobody_looks(monkeypatch):
+    """No browser opens, and pages are not waited for."""
+
+    def none():
+        raise webbrowser.Error
+
+    monkeypatch.setattr(webbrowser, "get", none)
+    monkeypatch.setattr(PageServer, "wait", PageServer.stop)
 
 
 @pytest.mark.parametrize("page", with_blocks("python"))
@@ -43,7 +56,7 @@ def test_the_commands_on_a_page_run(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for block in blocks(page, "sh"):
         for line in block.text.splitlines():
-            words = shlex.split(line, comments=True)
+            words = shlex.split(line.split(" > ")[0], comments=True)
             if words[:1] == ["ffsr-plan"]:
                 force = ["--force"] if "--out" in words else []
                 result = CliRunner().invoke(app, [*words[1:], *force])
