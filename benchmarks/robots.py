@@ -91,10 +91,8 @@ def seconds(run: Callable[[], object], repeats: int) -> float:
     return float(np.median(times))
 
 
-def clearances(problem: fp.Problem) -> np.ndarray:
-    """Of all nodes of the inner layers."""
-    lattice = LayeredLattice(problem)
-    query = ObstacleQuery(problem.robot, problem.scene)
+def clearances(lattice: LayeredLattice, query: ObstacleQuery) -> np.ndarray:
+    """Of all nodes of the inner layers, the nominal motion given."""
     return np.concatenate([query.distances(lattice.layer(i)) for i in range(1, lattice.divisions)])
 
 
@@ -111,7 +109,8 @@ class Figures(NamedTuple):
 
 def figures(problem: fp.Problem, repeats: int, samples: int) -> Figures:
     """Measure one problem."""
-    reference = Reference(problem)
+    reference, lattice = Reference(problem), LayeredLattice(problem)
+    query = ObstacleQuery(problem.robot, problem.scene)
 
     def ratio(run: Callable[[], object]) -> float:
         return seconds(run, repeats) / reference.seconds(repeats)
@@ -120,7 +119,7 @@ def figures(problem: fp.Problem, repeats: int, samples: int) -> Figures:
     best = fp.plan(problem, fp.LatticeOptimum())
     proof = best.certificate
     return Figures(
-        ratio(lambda: clearances(problem)),
+        ratio(lambda: clearances(lattice, query)),
         ratio(lambda: fp.plan(problem, fp.LatticeOptimum(), refine=False)),
         ratio(lambda: fp.plan(problem, refine=False)),
         colony.gap,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from threading import Timer
 from typing import Any
 
@@ -14,17 +15,17 @@ def call(kernel: Callable[..., Any], *arguments: object) -> Any:  # noqa: ANN401
     """Call a compiled function; if this is its first call and takes its time, say why."""
     if getattr(kernel, "overloads", True):
         return kernel(*arguments)
-    notice = Timer(
-        _PATIENCE,
-        lambda: print(
-            "ffsr-plan: compiling, once after an installation (some ten seconds in all)",
-            file=sys.stderr,
-            flush=True,
-        ),
-    )
+    with said_after(_PATIENCE, "compiling, once after an installation (some ten seconds in all)"):
+        return kernel(*arguments)
+
+
+@contextmanager
+def said_after(seconds: float, words: str) -> Iterator[None]:
+    """Say on standard error what takes so long, if it does."""
+    notice = Timer(seconds, lambda: print(f"ffsr-plan: {words}", file=sys.stderr, flush=True))
     notice.daemon = True
     notice.start()
     try:
-        return kernel(*arguments)
+        yield
     finally:
         notice.cancel()

@@ -123,7 +123,7 @@ class AttitudeOutOfReach(PlanningError):  # noqa: N818 - so are the names of its
         super().__init__(
             f"goal attitude out of reach: the arms were found to turn the base by "
             f"{math.degrees(self.turned):.1f} of {math.degrees(wanted):.1f} degrees; more "
-            "divisions, wider or other posture axes may turn it farther"
+            "divisions, wider or other posture axes, or another seed, may turn it farther"
         )
 
     def __reduce__(self) -> tuple[type, tuple[float, float]]:

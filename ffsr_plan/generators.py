@@ -14,6 +14,7 @@ from ffsr_plan.inputs import FARTHEST, Array, finite_array, number, whole_number
 from ffsr_plan.scene import Scene
 
 Spared = Sequence[tuple[ArrayLike, float]]
+_MOST = 1_000_000  # spheres
 _ATTEMPTS = 200
 
 
@@ -122,7 +123,7 @@ def scatter(
     if not isinstance(counts, Sequence) or len(counts) != 2:
         raise InvalidInput("scatter counts", counts, "the least and the greatest number")
     fewest = whole_number("scatter counts", counts[0], at_least=0)
-    most = whole_number("scatter counts", counts[1], at_least=fewest, at_most=1_000_000)
+    most = whole_number("scatter counts", counts[1], at_least=fewest, at_most=_MOST)
     first = finite_array("scatter low", low, (2,), FARTHEST)
     last = finite_array("scatter high", high, (2,), FARTHEST)
     if not np.all(first < last):
@@ -176,6 +177,10 @@ def truss(
     for k, i in itertools.product(range(count), range(4)):
         struts.append((joints[k, i], joints[k + 1, i]))
         struts.append((joints[k, i], joints[k + 1, i - 1]))
+    total = sum(np.linalg.norm(tip - tail) for tail, tip in struts)
+    if total / size > _MOST:
+        allowed = f"{total / _MOST:.3g} m or more, for at most {_MOST} spheres along {total:.4g} m"
+        raise InvalidInput("truss radius", radius, allowed)
     centers = [joints.reshape(-1, 3)]
     for tail, tip in struts:
         steps = int(np.ceil(np.linalg.norm(tip - tail) / size))
@@ -209,7 +214,7 @@ def _drawn(
 ) -> Scene:
     """As many spheres as asked for, drawn again where they reach into what is spared."""
     rng = np.random.default_rng(whole_number(f"{what} seed", seed, at_least=0))
-    count = whole_number(f"{what} count", count, at_least=0, at_most=1_000_000)
+    count = whole_number(f"{what} count", count, at_least=0, at_most=_MOST)
     small, large = _radii(what, radii)
     balls = [
         (

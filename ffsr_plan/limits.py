@@ -12,6 +12,8 @@ from ffsr_plan.inputs import Array, number
 from ffsr_plan.robot import SpaceRobot
 from ffsr_plan.straight_runs import StraightRuns
 
+_MOST = 1e9
+"""Beyond it a flight is so short that rounding decides about thrust and delta-v."""
 PerJoint = float | Mapping[str, float] | None
 """One number for all joints, or numbers by joint name, or nothing."""
 
@@ -106,17 +108,19 @@ def _row(base: float, turn: float, joints: Array) -> Array:
 
 
 def _one(what: str, value: float | None) -> float:
-    return np.inf if value is None else number(what, value, above=0.0)
+    return np.inf if value is None else number(what, value, above=0.0, at_most=_MOST)
 
 
 def _per_joint(robot: SpaceRobot, what: str, value: PerJoint, default: Array) -> Array:
     if value is None:
         return default
     if not isinstance(value, Mapping):
-        return np.full(robot.nd, number(what, value, above=0.0))
+        return np.full(robot.nd, number(what, value, above=0.0, at_most=_MOST))
     values = np.array(default)
     for name, each in value.items():
         if name not in robot.joint_names:
             raise unknown_name(what, name, robot.joint_names)
-        values[robot.joint_names.index(name)] = number(f"{what}.{name}", each, above=0.0)
+        values[robot.joint_names.index(name)] = number(
+            f"{what}.{name}", each, above=0.0, at_most=_MOST
+        )
     return values

@@ -110,7 +110,10 @@ class LiveView:
         Waits until open pages have it, five seconds at most.
         """
         from ffsr_plan.page import page
+        from ffsr_plan.result import Plan
 
+        if not isinstance(plan, Plan):
+            raise InvalidInput("plan", plan, "a Plan")
         before, _, after = page(plan, self._title).rpartition("</body>")
         self._server.replace(before + _PLAY + after, json.dumps({"over": ""}))
 

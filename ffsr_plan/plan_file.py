@@ -33,7 +33,10 @@ _PLAIN = (
 
 
 def to_dict(plan: Plan) -> dict[str, Any]:
-    """The plan in plain Python values. Infinite clearances (an empty scene) become None."""
+    """The plan in plain Python values.
+
+    None stands for what is infinite: clearances in an empty scene, costs of cycles without a path.
+    """
     problem = plan.problem
     return {
         "format": FORMAT,
@@ -58,7 +61,10 @@ def to_dict(plan: Plan) -> dict[str, Any]:
         "lattice_objective": plan.lattice_objective,
         "optimum": plan.optimum,
         "clearances": _without_infinity(plan.clearances),
-        "history": {k: v.tolist() for k, v in plan.history._asdict().items()},
+        "history": {
+            k: v.tolist() if k == "distinct" else _without_infinity(v)
+            for k, v in plan.history._asdict().items()
+        },
         "trails": {k: v.tolist() for k, v in plan.trails._asdict().items()},
         "certificate": {
             **plan.certificate._asdict(),
@@ -146,6 +152,15 @@ def from_dict(data: dict[str, Any]) -> Plan:
         ),
         **{name: given[name] for name in _PLAIN},
     )
+    history: dict[str, Any] = {
+        k: _whole(v) if k == "distinct" else _with_infinity(v) for k, v in data["history"].items()
+    }
+    trails: dict[str, Any] = {
+        k: finite_array(f"trails of the plan, {k}", v, (-1,))
+        if k in ("laid", "pheromone")
+        else _whole(v)
+        for k, v in data["trails"].items()
+    }
     certificate = dict(data["certificate"])
     certificate["least_clearance"] = float(_with_infinity([certificate["least_clearance"]])[0])
     return Plan(
@@ -153,14 +168,16 @@ def from_dict(data: dict[str, Any]) -> Plan:
         planner=PLANNERS[settings.pop("name")](**settings),
         seed=data["seed"],
         nodes=_whole(data["nodes"]),
-        configurations=frozen(np.array(data["configurations"], dtype=np.float64)),
+        configurations=finite_array(
+            "configurations of the plan", data["configurations"], (-1, problem.robot.model.nq)
+        ),
         length=data["length"],
         objective=data["objective"],
         lattice_objective=data["lattice_objective"],
         optimum=data["optimum"],
         clearances=_with_infinity(data["clearances"]),
-        history=History(**{k: _numbers(v) for k, v in data["history"].items()}),
-        trails=Trails(**{k: _numbers(v) for k, v in data["trails"].items()}),
+        history=History(**history),
+        trails=Trails(**trails),
         certificate=Certificate(**certificate),
         interrupted=data["interrupted"],
         seconds=data["seconds"],
@@ -246,6 +263,10 @@ def _check_shapes(plan: Plan) -> None:
             raise InvalidInput(f"{name} of the plan", shape, f"the shape {wanted}")
     for name in ("length", "objective", "lattice_objective", "optimum", "seconds"):
         number(f"{name} of the plan", getattr(plan, name), at_least=0.0)
+    for name, table in (("history", plan.history), ("trails", plan.trails)):
+        sizes = sorted({column.shape for column in table})
+        if len(sizes) > 1 or len(sizes[0]) > 1:
+            raise InvalidInput(f"{name} of the plan", sizes, "columns of one length")
 
 
 def _check_numbers(plan: Plan) -> None:
@@ -259,17 +280,25 @@ def _check_numbers(plan: Plan) -> None:
             whole_number(what, value, at_least=0)
         elif value != np.inf:  # an empty scene; the bound may fall short of zero by rounding
             number(what, value, at_least=-1e-6)
+    if plan.optimum > plan.lattice_objective * (1.0 + 1e-9):
+        allowed = f"at most F on the lattice, {plan.lattice_objective!r}"
+        raise InvalidInput("optimum of the plan", plan.optimum, allowed)
     lattice = plan.problem.lattice
+    offsets = int(np.prod([2 * getattr(lattice, n).half_count + 1 for n in lattice.axes]))
+    for end, most in (("layer", lattice.divisions), ("tail", offsets), ("head", offsets)):
+        walked = getattr(plan.trails, end)
+        if np.any((walked < 0) | (walked >= most)):
+            raise InvalidInput(f"trails of the plan, {end}", walked, f"0 to {most - 1}")
     nodes = plan.nodes.reshape(len(plan.nodes), -1)
     counts = {name: getattr(lattice, name).half_count for name in lattice.axes}
     known = {name: range(-n, n + 1) for name, n in counts.items()}
     known |= {f"postures.{k}": axis.indices for k, axis in enumerate(lattice.postures)}
     known = known or {"no axis": range(1)}
-    for (name, allowed), column in zip(known.items(), nodes.T, strict=True):
+    for (axis, inside), column in zip(known.items(), nodes.T, strict=True):
         for node in column.tolist():
-            if node not in allowed:
+            if node not in inside:
                 raise InvalidInput(
-                    f"nodes of the plan, {name}", node, f"{allowed[0]} to {allowed[-1]}"
+                    f"nodes of the plan, {axis}", node, f"{inside[0]} to {inside[-1]}"
                 )
 
 
@@ -278,12 +307,11 @@ def _digest(data: dict[str, Any]) -> str:
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 
-def _numbers(values: list[float]) -> NDArray[Any]:
-    return frozen(np.array(values) if values else np.zeros(0))
-
-
 def _whole(values: list[int]) -> NDArray[np.int64]:
-    return frozen(np.array(values, dtype=np.int64))
+    found = np.array(values, dtype=np.float64)
+    if not np.all(np.abs(found) < 2.0**53) or np.any(found != np.round(found)):
+        raise InvalidInput("plan", values, "whole numbers there")
+    return frozen(found.astype(np.int64))
 
 
 def _without_infinity(values: NDArray[np.float64]) -> list[float | None]:
@@ -291,4 +319,7 @@ def _without_infinity(values: NDArray[np.float64]) -> list[float | None]:
 
 
 def _with_infinity(values: list[float | None]) -> NDArray[np.float64]:
-    return frozen(np.array([np.inf if v is None else v for v in values], dtype=np.float64))
+    found = np.array([np.inf if v is None else v for v in values], dtype=np.float64)
+    if np.any(np.isnan(found)):
+        raise InvalidInput("plan", values, "numbers there")
+    return frozen(found)

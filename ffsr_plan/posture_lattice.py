@@ -16,6 +16,7 @@ from ffsr_plan import attitude
 from ffsr_plan.attitude import IDENTITY
 from ffsr_plan.axes import PostureAxis
 from ffsr_plan.collision import SelfQuery
+from ffsr_plan.compiling import said_after
 from ffsr_plan.errors import InvalidInput, unknown_name
 from ffsr_plan.inputs import Array, Flags, IntArray, frozen
 from ffsr_plan.lattice import LayeredLattice
@@ -104,7 +105,9 @@ class PostureLattice:
             i, p, step = np.nonzero(there)
             begin, on = self.joint_values[i, p], self.successors[p, step]
             steps = self.joint_values[i + 1, on] - begin
-            turned = Reaction.of_segments(self.problem.robot, begin, steps).increments
+            words = f"the base's reaction to {len(steps)} joint steps, before the search"
+            with said_after(5.0, words):
+                turned = Reaction.of_segments(self.problem.robot, begin, steps).increments
             found[i, p, step] = turned
             if self.alike:
                 found[i, on, k - 1 - step] = attitude.inverse(turned)

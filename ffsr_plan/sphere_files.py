@@ -28,6 +28,7 @@ def read_csv(path: str | Path) -> tuple[Array, Array]:
         InvalidInput: naming file, line, column and value.
     """
     what = f"CSV file '{path}'"
+    _check_path(path)
     try:
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -75,6 +76,7 @@ def read_numpy(path: str | Path) -> tuple[Array, Array]:
         InvalidInput: naming the file, what it holds and what is allowed.
     """
     what = f"NumPy file '{path}'"
+    _check_path(path)
     suffix = Path(path).suffix
     if suffix not in (".npy", ".npz"):
         raise InvalidInput(what, suffix, ".npy or .npz")
@@ -83,6 +85,9 @@ def read_numpy(path: str | Path) -> tuple[Array, Array]:
         arrays = {"": found} if suffix == ".npy" else dict(found)
     except Exception as error:  # whatever NumPy trips over in a file of any content
         raise InvalidInput(what, type(error).__name__, f"a file of numbers ({error})") from None
+    kinds = {array.dtype.kind for array in arrays.values()}
+    if not kinds <= set("iuf"):
+        raise InvalidInput(what, f"kinds of numbers {sorted(kinds)}", "real numbers")
     if suffix == ".npz":
         for name in ("centers", "radii"):
             if name not in arrays:
@@ -92,6 +97,11 @@ def read_numpy(path: str | Path) -> tuple[Array, Array]:
     if table.ndim != 2 or table.shape[1] != len(COLUMNS):
         raise InvalidInput(what, f"shape {table.shape}", "shape (N, 4): x, y, z, radius")
     return table[:, :3], table[:, 3]
+
+
+def _check_path(path: object) -> None:
+    if not isinstance(path, (str, Path)):
+        raise InvalidInput("path", path, "a path")
 
 
 def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:

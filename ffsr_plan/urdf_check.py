@@ -9,6 +9,7 @@ neither it nor Coal is made for: chains of many thousand links, lengths of kilom
 from __future__ import annotations
 
 import math
+from difflib import get_close_matches
 from typing import NamedTuple
 from xml.etree import ElementTree
 
@@ -27,8 +28,16 @@ JOINTS = ("revolute", "continuous", "prismatic", "fixed")
 LARGEST = 1000.0
 """Most metres of any size, coordinate or prismatic limit: Coal's errors grow with the sizes, and
 1e-7 m are allowed for them."""
+HEAVIEST = 1e9
+"""Most kilograms of a body; beyond it the lighter ones are lost in rounding."""
 _TAKEN = ("universe", "root_joint")
 """Pinocchio's own joints: what hangs on a joint of such a name it puts in a wrong place."""
+_MANY = 10_000
+_LINK_PARTS = {"inertial": 1, "collision": _MANY, "visual": _MANY}
+_JOINT_PARTS = {
+    "origin": 1, "parent": 1, "child": 1, "axis": 1, "limit": 1, "mimic": 1, "dynamics": 1,
+    "calibration": 1, "safety_controller": 1,
+}  # fmt: skip
 _MOST_LINKS, _MOST_DEEP = 1000, 500
 _MOST_TEXT = 50_000_000  # characters
 
@@ -50,6 +59,7 @@ def check_urdf(text: str, where: str) -> Counts:
     _check_tree(root, where)
     links = root.findall("link")
     for link in links:
+        _check_parts(link, f"{where}, link '{link.get('name')}'", _LINK_PARTS)
         _check_inertia(link, f"{where}, link '{link.get('name')}'")
         for element in link.findall("collision"):
             _check_collision(element, f"{where}, link '{link.get('name')}', collision")
@@ -172,6 +182,8 @@ def _check_inertia(link: ElementTree.Element, where: str) -> None:
     if mass is None or inertia is None:
         raise InvalidInput(where, "inertial without mass or inertia", "both of them")
     (value,) = numbers(f"{where}, mass", mass.get("value"), 1)
+    if value > HEAVIEST:
+        raise InvalidInput(f"{where}, mass", value, f"at most {HEAVIEST:g} kg")
     entry = {
         key: numbers(f"{where}, {key}", inertia.get(key), 1)[0]
         for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
@@ -216,12 +228,27 @@ def _check_collision(collision: ElementTree.Element, where: str) -> None:
             raise InvalidInput(f"{where}, scale", scale, "three numbers other than 0")
 
 
+def _check_parts(element: ElementTree.Element, where: str, known: dict[str, int]) -> None:
+    """Raise `InvalidInput` for what looks like a known part misspelt, and for one given twice.
+
+    Other parts, which some tools add, are left to them.
+    """
+    tags = [part.tag for part in element if isinstance(part.tag, str)]
+    for tag in tags:
+        if tag not in known and get_close_matches(tag.lower(), known, 1, 0.75):
+            raise unknown_name(where, tag, list(known))
+        if tag in known and tags.count(tag) > known[tag]:
+            raise InvalidInput(f"{where}, <{tag}>", f"{tags.count(tag)} of them", "one of them")
+
+
 def _check_joint(joint: ElementTree.Element, where: str) -> None:
+    _check_parts(joint, where, _JOINT_PARTS)
     kind = joint.get("type")
     if kind not in JOINTS:
         raise InvalidInput(f"{where}, type", kind, ", ".join(JOINTS))
     if joint.find("mimic") is not None:
-        raise InvalidInput(where, "mimic", "joints that move on their own")
+        allowed = "joints that move on their own; ffsr_plan.compose fixes others with `locked`"
+        raise InvalidInput(where, "mimic", allowed)
     axis = joint.find("axis")
     if kind != "fixed" and axis is not None:
         values = numbers(f"{where}, axis", axis.get("xyz"), 3)

@@ -75,6 +75,8 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
     """
     samples = whole_number("samples", samples, at_least=1)
     problems: list[str] = []
+    if not np.all(np.isfinite(plan.configurations)):
+        problems.append("some configurations are not numbers")
     robot = plan.problem.robot
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
     for link in bodies.uncovered(robot.meshes):
@@ -116,6 +118,9 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
             problems.append(f"the centre of mass moves by {drift:.3g} m without thrusters")
     problems += _ends_and_limits(plan)
     clearance_error, objective_error = _recomputed(plan, bodies, problems)
+    figures = (least, apart, residual, drift, wheel_error, clearance_error, objective_error)
+    if any(figure is not None and np.isnan(figure) for figure in figures):
+        problems.append("some of the figures are not numbers")
     return Report(
         not problems, tuple(problems), least, apart, residual, drift, wheel_error, clearance_error,
         objective_error, checked, largest,

@@ -160,7 +160,7 @@ def timed(
         float, typer.Option(help="Pass corners of the base's path by pulses of so many m/s.")
     ] = 0.0,
     csv: Annotated[Path | None, typer.Option(help="Write the trajectory to this table.")] = None,
-    rate: Annotated[float, typer.Option(help="Instants a second.")] = 10.0,
+    rate: Annotated[float, typer.Option(help="Rows a second of --csv.")] = 10.0,
     force: Force = False,
 ) -> None:
     """Fly a saved plan as fast as limits allow: duration, delta-v, thrust, torques."""
@@ -172,7 +172,7 @@ def timed(
             refuse_to_replace("--csv", csv, force)
         flown = Plan.load(plan_file).timed(**given)
         summary = Table(show_header=False)
-        for name, value in flight_rows(flown, rate):
+        for name, value in flight_rows(flown):
             summary.add_row(name, value)
         out_console.print(summary)
         if csv is not None:

@@ -86,9 +86,9 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
         yield "  wheel momentum error", f"{report.wheel_momentum_error:.1e} relative"
 
 
-def flight_rows(flown: TimedPlan, rate: float) -> Iterator[tuple[str, str]]:
-    """Names and values; peaks are those of so many instants a second."""
-    robot, found = flown.motion.robot, flown.at(flown.clock(rate))
+def flight_rows(flown: TimedPlan) -> Iterator[tuple[str, str]]:
+    """Names and values; peaks are those of ten thousand instants."""
+    robot, found = flown.motion.robot, flown.at(np.linspace(0.0, flown.duration, 10_001))
     yield "duration", f"{flown.duration:.2f} s"
     yield "rests on the way", f"{len(flown.rests)}, at corners of the path"
     if len(flown.pulses):
