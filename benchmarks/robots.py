@@ -19,8 +19,6 @@ from reference import Reference
 from scenes import RESULTS, publish, table
 
 import ffsr_plan as fp
-from ffsr_plan.collision import ObstacleQuery
-from ffsr_plan.lattice import LayeredLattice
 
 LATTICES = {
     "41": fp.Lattice(40, fp.Axis(20, 0.15)),
@@ -91,11 +89,6 @@ def seconds(run: Callable[[], object], repeats: int) -> float:
     return float(np.median(times))
 
 
-def clearances(lattice: LayeredLattice, query: ObstacleQuery) -> np.ndarray:
-    """Of all nodes of the inner layers, the nominal motion given."""
-    return np.concatenate([query.distances(lattice.layer(i)) for i in range(1, lattice.divisions)])
-
-
 class Figures(NamedTuple):
     """Of one problem; times in units of C."""
 
@@ -109,8 +102,8 @@ class Figures(NamedTuple):
 
 def figures(problem: fp.Problem, repeats: int, samples: int) -> Figures:
     """Measure one problem."""
-    reference, lattice = Reference(problem), LayeredLattice(problem)
-    query = ObstacleQuery(problem.robot, problem.scene)
+    reference = Reference(problem)
+    roadmaps = iter([fp.Roadmap(problem) for _ in range(repeats)])
 
     def ratio(run: Callable[[], object]) -> float:
         return seconds(run, repeats) / reference.seconds(repeats)
@@ -119,7 +112,7 @@ def figures(problem: fp.Problem, repeats: int, samples: int) -> Figures:
     best = fp.plan(problem, fp.LatticeOptimum())
     proof = best.certificate
     return Figures(
-        ratio(lambda: clearances(lattice, query)),
+        ratio(lambda: next(roadmaps).clearances),
         ratio(lambda: fp.plan(problem, fp.LatticeOptimum(), refine=False)),
         ratio(lambda: fp.plan(problem, refine=False)),
         colony.gap,
