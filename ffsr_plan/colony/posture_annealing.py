@@ -35,7 +35,6 @@ def blank_course(path: IntArray) -> Course:
     m = len(path) - 1
     return Course(
         path.copy(),
-        np.zeros(m, np.int64),
         np.zeros(m),
         np.zeros((m + 1, 4)),
         np.zeros(m + 1),
@@ -68,7 +67,7 @@ def trial_cost(
         ground: the lattice.
         course: the path as it is.
         trial: the new one, of which only the nodes are given; worked out from `first` on, but for
-            lengths and steps that do not change.
+            lengths that do not change.
         first: the first layer that differs.
         last: the first layer behind these.
         weight: of a radian by which the goal attitude is missed [m].
@@ -111,7 +110,6 @@ def trial_cost(
 def adopt(course: Course, trial: Course, first: int, last: int) -> None:
     """Make the trial the course."""
     course.nodes[first:last] = trial.nodes[first:last]
-    course.steps[first - 1 : last] = trial.steps[first - 1 : last]
     course.lengths[first - 1 : last] = trial.lengths[first - 1 : last]
     course.quats[first:] = trial.quats[first:]
     course.clearances[first:] = trial.clearances[first:]

@@ -85,8 +85,6 @@ class Course(NamedTuple):
 
     nodes: IntArray
     """(m + 1, 2) base offset and posture on each layer."""
-    steps: IntArray
-    """(m,) posture step of each edge."""
     lengths: Array
     """(m,) of the edges [m]."""
     quats: Array
@@ -219,7 +217,7 @@ def missed_cost(numbers: Array, quat: Array, goal: Array, weight: float) -> floa
 def take_edges(ground: Ground, course: Course, first: int, last: int) -> bool:
     """Work out the edges first .. last - 1 of a course; whether all of them are there.
 
-    The attitude on layer `first` is given; steps, lengths and the attitudes behind are filled in.
+    The attitude on layer `first` is given; lengths and the attitudes behind are filled in.
     """
     nodes, quats, turns, bends = course.nodes, course.quats, ground.turns, ground.bends
     across, indices, allowed, barred = ground.across, ground.indices, ground.allowed, ground.barred
@@ -229,7 +227,6 @@ def take_edges(ground: Ground, course: Course, first: int, last: int) -> bool:
         step = step_between(indices, p, p_on)
         if step < 0 or not allowed[i + 1, p_on] or is_barred(barred, i, b, p, b_on, p_on):
             return False
-        course.steps[i] = step
         course.lengths[i] = edge_length(delta_d, across[b, b_on], bends[i, p, step])
         compose(quats[i], turns[i, p, step], quats[i + 1])
     return True
