@@ -182,3 +182,15 @@ def test_the_version_is_said(run):
     result = run("--version")
     assert result.exit_code == 0
     assert result.stdout.startswith("ffsr-plan 0.")
+
+
+def test_where_there_are_no_obstacles_nothing_infinite_is_said_of_them(tmp_path):
+    file = tmp_path / "empty.toml"
+    file.write_text(
+        "[robot]\nurdf = 'planar_dual_arm'\n[goal]\nposition = [3.0, 0.0, 0.0]\n"
+        "[lattice]\ndivisions = 5\nlateral = { half_count = 2, spacing = 0.2 }\n"
+    )
+    result = CliRunner().invoke(app, ["plan", str(file)])
+    assert result.exit_code == 0, result.output
+    assert "no obstacles" in result.output
+    assert "inf" not in result.output

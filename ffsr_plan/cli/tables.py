@@ -31,10 +31,12 @@ def plan_table(title: str, found: Plan, report: Report | None, duration: float) 
         + ("optimum" if found.optimum_is_exact else "lower bound")
         + f" {found.optimum:.4f}, gap {found.gap:.3%}",
     )
-    table.add_row(
-        "clearance at nodes", f"least {clearances.min():.4f} m, mean {clearances.mean():.4f} m"
-    )
-    table.add_row("proven along the motion", f"at least {proven(proof.least_clearance)}")
+    nodes = f"least {clearances.min():.4f} m, mean {clearances.mean():.4f} m"
+    along = f"at least {proven(proof.least_clearance)}"
+    if not len(found.problem.scene):
+        nodes = along = "no obstacles"
+    table.add_row("clearance at nodes", nodes)
+    table.add_row("proven along the motion", along)
     table.add_row(
         "attitude on arrival",
         "alpha {:.3f}°, beta {:.3f}°, gamma {:.3f}°".format(*angles),
@@ -76,8 +78,10 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
     """Names and values of a re-check."""
     yield "verified", "yes" if report.ok else "NO, see below"
     yield "  samples", f"{report.samples}, at most {1e3 * report.largest_step:.2f} mm apart"
-    yield "  least clearance", f"{report.least_clearance:.6f} m"
-    yield "  least link-to-link", f"{report.least_self_separation:.6f} m"
+    if np.isfinite(report.least_clearance):  # there are obstacles
+        yield "  least clearance", f"{report.least_clearance:.6f} m"
+    if np.isfinite(report.least_self_separation):
+        yield "  least link-to-link", f"{report.least_self_separation:.6f} m"
     if report.momentum_residual is not None:
         yield "  momentum residual", f"{report.momentum_residual:.1e} relative"
     if report.center_drift is not None:
