@@ -1,9 +1,14 @@
 """Fixtures shared by all tests."""
 
+import signal
+
 import pytest
 from hypothesis import HealthCheck, settings
 
 import ffsr_plan as fp
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of a script
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # programs under test inherit it
 
 settings.register_profile(
     "ffsr", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
