@@ -11,17 +11,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ffsr_plan import momentum
-from ffsr_plan.arms import arm_names
-from ffsr_plan.axes import Axis, Lattice, PostureAxis
-from ffsr_plan.bus import Bus, Panel
-from ffsr_plan.catalog import RobotSummary, robot_summaries
-from ffsr_plan.collision import Clearance, clearance
-from ffsr_plan.colony import AntSystem, MaxMinAntSystem
-from ffsr_plan.composition import Mount, compose
-from ffsr_plan.edge_proof import EdgeProof, certify_edge
-from ffsr_plan.end_effector import inverse_kinematics
-from ffsr_plan.errors import (
+from ffsr_plan.collision.distances import Clearance, clearance
+from ffsr_plan.core.errors import (
     AttitudeOutOfReach,
     FfsrPlanError,
     GoalInCollision,
@@ -32,21 +23,32 @@ from ffsr_plan.errors import (
     StartInCollision,
     UnprovenPath,
 )
-from ffsr_plan.lattice import LayeredLattice
-from ffsr_plan.optimum import LatticeOptimum
-from ffsr_plan.planner import plan
-from ffsr_plan.problem import Problem
-from ffsr_plan.refinement import refine
-from ffsr_plan.result import Plan
-from ffsr_plan.roadmap import Roadmap
-from ffsr_plan.robot import SpaceRobot, load_robot, robot_names
-from ffsr_plan.scene import Scene
-from ffsr_plan.timing import TimedPlan
-from ffsr_plan.wheels import WheelMomentum
+from ffsr_plan.dynamics import momentum
+from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.lattice.refinement import refine
+from ffsr_plan.lattice.roadmap import Roadmap
+from ffsr_plan.planning.plan import Plan
+from ffsr_plan.planning.planner import plan
+from ffsr_plan.problem.end_effector_goal import inverse_kinematics
+from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.proof.single_edge import EdgeProof, certify_edge
+from ffsr_plan.robots.robot import SpaceRobot, load_robot, robot_names
+from ffsr_plan.robots.summary import RobotSummary, robot_summaries
+from ffsr_plan.satellites.arms import arm_names
+from ffsr_plan.satellites.bus import Bus, Panel
+from ffsr_plan.satellites.composition import Mount, compose
+from ffsr_plan.scene import generators
+from ffsr_plan.scene.scene import Scene
+from ffsr_plan.search.ants.ant_system import AntSystem
+from ffsr_plan.search.ants.max_min import MaxMinAntSystem
+from ffsr_plan.search.optimum import LatticeOptimum
+from ffsr_plan.trajectory.timed_plan import TimedPlan
 
 if TYPE_CHECKING:
-    from ffsr_plan.live import LiveView
-    from ffsr_plan.scenario import Scenario, load_scenario, read_scenario
+    from ffsr_plan.display.live_view import LiveView
+    from ffsr_plan.scenario_files.scenario import Scenario, load_scenario, read_scenario
 
 __version__ = "0.1.0"
 __all__ = [
@@ -85,6 +87,7 @@ __all__ = [
     "certify_edge",
     "clearance",
     "compose",
+    "generators",
     "inverse_kinematics",
     "load_robot",
     "load_scenario",
@@ -97,10 +100,10 @@ __all__ = [
 ]
 
 _LAZY = {  # these need pydantic, or a web server
-    "LiveView": "live",
-    "Scenario": "scenario",
-    "load_scenario": "scenario",
-    "read_scenario": "scenario",
+    "LiveView": "display.live_view",
+    "Scenario": "scenario_files.scenario",
+    "load_scenario": "scenario_files.scenario",
+    "read_scenario": "scenario_files.scenario",
 }
 
 
@@ -110,3 +113,7 @@ def __getattr__(name: str) -> object:
 
         return getattr(import_module(f"ffsr_plan.{_LAZY[name]}"), name)
     raise AttributeError(f"module 'ffsr_plan' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return __all__

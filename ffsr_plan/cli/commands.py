@@ -16,7 +16,7 @@ from ffsr_plan.cli.files import prepared, refuse_to_replace, unused
 from ffsr_plan.cli.planning import Options, Watched, plan_and_report
 from ffsr_plan.cli.tables import flight_rows, report_table
 from ffsr_plan.cli.terminal import errors_on_stderr, out_console, with_spinner
-from ffsr_plan.errors import InvalidInput, PlanningError
+from ffsr_plan.core.errors import InvalidInput, PlanningError
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -118,7 +118,7 @@ def verify(
 ) -> None:
     """Check a saved plan again, densely and independently of the planner."""
     with errors_on_stderr():
-        from ffsr_plan.result import Plan
+        from ffsr_plan.planning.plan import Plan
 
         loaded = Plan.load(plan_file)
         report = with_spinner("verifying", lambda: loaded.verify(samples))
@@ -138,7 +138,7 @@ def export(
 ) -> None:
     """Write the path of a saved plan as a table, units in its header."""
     with errors_on_stderr():
-        from ffsr_plan.result import Plan
+        from ffsr_plan.planning.plan import Plan
 
         refuse_to_replace("PATH.csv", table, force)
         Plan.load(plan_file).to_csv(table, samples)
@@ -166,7 +166,7 @@ def timed(
     """Fly a saved plan as fast as limits allow: duration, delta-v, thrust, torques."""
     given = {k: v for k, v in locals().items() if k not in ("plan_file", "csv", "rate", "force")}
     with errors_on_stderr():
-        from ffsr_plan.result import Plan
+        from ffsr_plan.planning.plan import Plan
 
         if csv is not None:
             refuse_to_replace("--csv", csv, force)
@@ -187,7 +187,7 @@ def view(
 ) -> None:
     """Show a saved plan in the browser, served on 127.0.0.1 until Ctrl-C."""
     with errors_on_stderr():
-        from ffsr_plan.result import Plan
+        from ffsr_plan.planning.plan import Plan
 
         Plan.load(plan_file).show(port, block=True, open_browser=browser)
 
@@ -195,8 +195,8 @@ def view(
 @app.command()
 def robots() -> None:
     """List the bundled robots, and the arms that `ffsr_plan.compose` mounts on a bus."""
-    from ffsr_plan.arms import arm_names
-    from ffsr_plan.catalog import robot_summaries
+    from ffsr_plan.robots.summary import robot_summaries
+    from ffsr_plan.satellites.arms import arm_names
 
     table = Table("robot", "kg", "reach", "postures", "joints", show_lines=True)
     for robot in robot_summaries():
@@ -217,7 +217,7 @@ def schema() -> None:
     """Print the JSON Schema of scenario files, for editors that complete and check TOML."""
     import json
 
-    from ffsr_plan.scenario_tables import schema as scenario_schema
+    from ffsr_plan.scenario_files.scenario_tables import schema as scenario_schema
 
     typer.echo(json.dumps(scenario_schema(), indent=2))
 

@@ -6,17 +6,17 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ffsr_plan.errors import InvalidInput
+from ffsr_plan.core.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from ffsr_plan.result import Plan
+    from ffsr_plan.planning.plan import Plan
 
 RESULTS = ("plan.json", "plan.html", "path.png", "clearance.png", "convergence.png")
 
 
 def write_results(found: Plan, title: str, target: Path) -> None:
     """Plan, page and figures into a directory."""
-    from ffsr_plan.figures import write_figures
+    from ffsr_plan.display.figures import write_figures
 
     try:
         target.mkdir(parents=True, exist_ok=True)

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from ffsr_plan.cli.files import write_results
 from ffsr_plan.cli.tables import plan_table
 from ffsr_plan.cli.terminal import err_console, out_console, with_spinner
-from ffsr_plan.errors import InvalidInput, PlanningError
+from ffsr_plan.core.errors import InvalidInput, PlanningError
 
 if TYPE_CHECKING:
-    from ffsr_plan.colony.records import Cycle
-    from ffsr_plan.result import Plan
-    from ffsr_plan.scenario import Scenario
+    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.scenario_files.scenario import Scenario
+    from ffsr_plan.search.records import Cycle
 
 
 class Watched(NamedTuple):
@@ -41,9 +41,9 @@ class Options(NamedTuple):
 
 def plan_and_report(source: str, options: Options, target: Path | None, check: bool) -> None:
     """Plan a scenario, write and print the result, re-check it."""
-    from ffsr_plan.inputs import number, one_of, whole_number
-    from ffsr_plan.planner import PLANNERS
-    from ffsr_plan.scenario import read_scenario
+    from ffsr_plan.core.checks import number, one_of, whole_number
+    from ffsr_plan.planning.planner import PLANNERS
+    from ffsr_plan.scenario_files.scenario import read_scenario
 
     duration = number("--duration", options.duration, above=0.0)
     scenario = read_scenario(source)
@@ -67,7 +67,7 @@ def plan_and_report(source: str, options: Options, target: Path | None, check: b
 
 def shown(scenario: Scenario, options: Options) -> Plan:
     """Plan while a page shows the colony, and in the end the plan."""
-    from ffsr_plan.live import LiveView
+    from ffsr_plan.display.live_view import LiveView
 
     watched = options.watched
     assert watched is not None
@@ -90,7 +90,7 @@ def planned(
     """Plan with a progress bar on a terminal, once it has taken a second."""
     from rich.progress import Progress
 
-    from ffsr_plan.planner import plan as make_plan
+    from ffsr_plan.planning.planner import plan as make_plan
 
     begin, followed = time.monotonic(), err_console.is_terminal
     with Progress(console=err_console, transient=True, auto_refresh=False) as progress:

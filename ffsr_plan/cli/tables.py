@@ -10,14 +10,14 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from ffsr_plan.result import Plan
-    from ffsr_plan.timing import TimedPlan
-    from ffsr_plan.verify import Report
+    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.trajectory.timed_plan import TimedPlan
+    from ffsr_plan.verification.verify import Report
 
 
 def plan_table(title: str, found: Plan, report: Report | None, duration: float) -> Table:
     """What there is to know of a plan; peak momentum of wheels for a duration [s]."""
-    from ffsr_plan.result import proven
+    from ffsr_plan.core.formatting import proven
 
     clearances, proof = found.clearances, found.certificate
     angles = np.degrees(found.arrival_attitude)

@@ -9,7 +9,7 @@ from typing import TypeVar
 import typer
 from rich.console import Console
 
-from ffsr_plan.errors import FfsrPlanError, PlanningError
+from ffsr_plan.core.errors import FfsrPlanError, PlanningError
 
 T = TypeVar("T")
 out_console = Console(highlight=False)

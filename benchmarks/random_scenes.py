@@ -1,0 +1,87 @@
+"""What the benchmark commands share: seeded random scenes, and the files that results go to.
+
+A scene is 4 to 11 spheres beside the way of the planar dual-arm robot, which travels 10 m from the
+start posture of `scenarios/fig2a.toml` to its goal posture; lengths in F count in metres. No
+planner was tuned on them.
+"""
+
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+import ffsr_plan as fp
+from ffsr_plan.scene.generators import scatter
+from ffsr_plan.search.optimum import lattice_optimum
+
+FIRST_SEED = 1000
+LATTICE = fp.Lattice(40, fp.Axis(20, 0.15))
+"""40 divisions, 41 nodes a layer."""
+RESULTS = Path(__file__).parent.parent / "docs" / "benchmarks"
+
+
+class Case(NamedTuple):
+    """A scene that has a path."""
+
+    seed: int
+    roadmap: fp.Roadmap
+    """Take `roadmap.forget()` for a search: it is shared."""
+    optimum: float
+    """F of the exact lattice optimum."""
+
+
+def random_problem(seed: int, delta: float, lattice: fp.Lattice = LATTICE) -> fp.Problem:
+    """The random scene of a seed; the same for every delta and lattice."""
+    ends = _ends()
+    return fp.Problem(
+        ends.robot,
+        scatter(seed, (4, 11), (1.8, -3.0), (8.2, 3.0), (0.15, 0.5)),
+        ends.start,
+        ends.goal,
+        delta=delta,
+        length_unit=1.0,
+        lattice=lattice,
+    )
+
+
+@cache
+def _ends() -> fp.Problem:
+    return fp.load_scenario("fig2a")
+
+
+def cases(seeds: Iterable[int], delta: float, lattice: fp.Lattice = LATTICE) -> Iterator[Case]:
+    """The scenes of these seeds, without those that have no path or whose ends collide."""
+    for seed in seeds:
+        try:
+            roadmap = fp.Roadmap(random_problem(seed, delta, lattice))
+            optimum = roadmap.objective(lattice_optimum(roadmap.forget()))
+        except (fp.NoPath, fp.StartInCollision, fp.GoalInCollision):
+            continue
+        yield Case(seed, roadmap, optimum)
+
+
+def gap(case: Case, roadmap: fp.Roadmap, path: np.ndarray) -> float:
+    """How far a path stays above the optimum, as `Plan.gap` counts it.
+
+    A path below it would mean that the optimum is wrong: that is an error here, not a gap of zero.
+    """
+    excess = roadmap.objective(path) / case.optimum - 1.0
+    if excess < -1e-9:
+        raise RuntimeError(f"scene {case.seed}: a path is {-excess:.2%} below the optimum")
+    return max(0.0, excess)
+
+
+def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A markdown table: the first column to the left, all others to the right."""
+    names = list(header)
+    lines = [names, ["---", *["---:"] * (len(names) - 1)], *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def publish(text: str, out: Path) -> None:
+    """Write a report and print it."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text(text, encoding="utf-8")
+    print(text)

@@ -1,0 +1,222 @@
+"""Turning by arm motion alone: how exactly, how far above the least joint path, how fast.
+
+    python -m benchmarks.studies.attitude.turning
+
+The planar dual-arm robot turns its base by 5 to 75 degrees, either way, and ends in the posture it
+began with; lengths are held against the dynamic programme of tests/helpers/turning_programme.py. A robot with two arms
+of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last, the parts of the search against each
+other. Writes docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
+"""
+
+import argparse
+import math
+import sys
+import time
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+import ffsr_plan as fp
+from benchmarks.random_scenes import RESULTS, publish, table
+from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.search.postures import colony
+from ffsr_plan.search.postures.posture_lattice import PostureLattice
+from tests.helpers.spatial_robot import spatial_problem
+from tests.helpers.turning_programme import turning_oracle
+
+REST = {"left_2": 0.8, "right_2": -0.8}
+LATTICE = fp.Lattice(
+    80,
+    postures=[
+        fp.PostureAxis({"left_1": 1, "right_1": -1}, 8, 0.25),
+        fp.PostureAxis({"left_2": 1, "right_2": 1}, 12, 0.25),
+    ],
+)
+AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "x + y": (1, 1, 0), "x - y + z": (1, -1, 1)}
+SPATIAL = ((10, 60, 4, 0.3), (30, 60, 4, 0.3), (45, 80, 4, 0.4), (60, 80, 4, 0.4))
+"""Degrees, divisions, levels to either side, spacing."""
+
+
+class Turn(NamedTuple):
+    """One plan."""
+
+    before: float
+    """Error before the correction [deg]."""
+    after: float
+    """And behind it [deg]."""
+    lattice: float
+    """L of the lattice path [m]."""
+    final: float
+    """L behind the correction [m]."""
+    seconds: float
+
+
+def planar(degrees: float) -> fp.Problem:
+    """Turn by so much and come back to the same posture."""
+    robot = fp.load_robot("planar_dual_arm")
+    start = robot.configuration(joints=REST)
+    goal = robot.configuration((0, 0, 0), (math.radians(degrees), 0, 0), REST)
+    return fp.Problem(robot, fp.Scene(), start, goal, lattice=LATTICE, reach_attitude=True)
+
+
+def turn(problem: fp.Problem, seed: int, planner: fp.MaxMinAntSystem | None = None) -> Turn | None:
+    """Plan; None where the goal was not reached."""
+    try:
+        plan = fp.plan(problem, planner, seed)
+    except fp.AttitudeOutOfReach:
+        return None
+    error = plan.arrival_attitude_error
+    if error is None or not np.isfinite(error):
+        raise RuntimeError("a plan without the attitude that was asked for")
+    return Turn(
+        _before(plan), math.degrees(error), plan.lattice_objective, plan.objective, plan.seconds
+    )
+
+
+def _before(plan: fp.Plan) -> float:
+    """Attitude error of the lattice path that the plan's nodes name [deg]."""
+    lattice, problem = PostureLattice(plan.problem), plan.problem
+    number = {tuple(index): p for p, index in enumerate(lattice.indices.tolist())}
+    nodes = [number[tuple(node)] for node in plan.nodes.tolist()]
+    joints = lattice.joint_values[np.arange(len(nodes)), nodes]
+    places = lattice.base.nominal.positions
+    path = Motion(problem.robot, problem.mode, problem.start, problem.goal, places, joints)
+    return math.degrees(float(angle_between(path.attitudes[-1], problem.goal[3:7])))
+
+
+def planar_table(angles: Iterable[int], seeds: int) -> str:
+    """How the planar robot turns, either way."""
+    oracle = turning_oracle(planar(10), math.radians(0.1))
+    rows, every, missed = [], [], 0
+    for size in angles:
+        for degrees in (size, -size):
+            tries = [turn(planar(degrees), seed) for seed in range(seeds)]
+            turns = [t for t in tries if t is not None]
+            missed += seeds - len(turns)
+            least = oracle.least(math.radians(degrees))
+            excess = [t.lattice / least - 1.0 for t in turns]
+            every += excess
+            if turns:
+                rows.append(_row(f"{degrees:+d}", turns, seeds, least, excess))
+            print(f"{degrees:+d} degrees", file=sys.stderr, flush=True)
+    head = ("degrees", "reached", "error before [deg]", "after", "oracle L [m]")
+    more = ("L above it, median", "worst", "L corrected [m]", "seconds")
+    above = np.array(every)
+    return table((*head, *more), rows) + (
+        f"\n\nOf {len(every) + missed} runs {len(every)} reached the goal; L lies "
+        f"{above.mean():.1%} above the oracle on average, {above.max():.1%} at worst, "
+        f"and by more than 5 % in {int(np.sum(above > 0.05))} runs."
+    )
+
+
+def _row(
+    name: str, turns: Sequence[Turn], seeds: int, least: float, excess: Sequence[float]
+) -> tuple[str, ...]:
+    return (
+        name,
+        f"{len(turns)} of {seeds}",
+        f"{max(t.before for t in turns):.2f}",
+        f"{max(t.after for t in turns):.0e}",
+        f"{least:.2f}",
+        f"{np.median(excess):.1%}",
+        f"{max(excess):.1%}",
+        f"{np.median([t.final for t in turns]):.2f}",
+        f"{np.median([t.seconds for t in turns]):.1f}",
+    )
+
+
+def spatial_table(settings: Iterable[tuple[int, int, int, float]], seeds: int) -> str:
+    """How the robot with three posture axes turns about five axes."""
+    rows = []
+    for degrees, divisions, levels, spacing in settings:
+        for name, axis in AXES.items():
+            problem = spatial_problem(degrees, axis, divisions, levels, spacing)
+            turns = [t for seed in range(seeds) if (t := turn(problem, seed)) is not None]
+            figures = (
+                (
+                    f"{max(t.before for t in turns):.2f}",
+                    f"{max(t.after for t in turns):.0e}",
+                    f"{np.median([t.lattice for t in turns]):.2f}",
+                    f"{np.median([t.seconds for t in turns]):.1f}",
+                )
+                if turns
+                else ("", "", "", "")
+            )
+            lattice = f"{divisions} x {2 * levels + 1}^3 of {spacing:g}"
+            rows.append((f"{degrees}, {name}", lattice, f"{len(turns)} of {seeds}", *figures))
+            print(f"{degrees} degrees about {name}", file=sys.stderr, flush=True)
+    head = ("degrees, axis", "lattice", "reached", "error before [deg]", "after", "L [m]", "s")
+    return table(head, rows)
+
+
+def parts_table(angles: Sequence[int], seeds: int) -> str:
+    """The default, without pheromone, and without ants."""
+    oracle = turning_oracle(planar(10), math.radians(0.1))
+    colony = fp.MaxMinAntSystem
+    planners = {
+        "ants, pheromone, annealing": colony(),
+        "ants without pheromone, annealing": colony(pheromone=False),
+        "one ant, one cycle, annealing": colony(ants=1, cycles=1),
+    }
+    rows = []
+    for name, planner in planners.items():
+        tries = [
+            (turn(planar(d), 100 + seed, planner), oracle.least(math.radians(d)))
+            for d in angles
+            for seed in range(seeds)
+        ]
+        excess = np.array([t.lattice / least - 1.0 for t, least in tries if t is not None])
+        seconds = np.median([t.seconds for t, _ in tries if t is not None])
+        reached = f"{len(excess)} of {len(tries)}"
+        rows.append(
+            (name, reached, f"{excess.mean():.2%}", f"{excess.max():.1%}", f"{seconds:.1f}")
+        )
+        print(name, file=sys.stderr, flush=True)
+    return table(("search", "reached", "L above the oracle, mean", "worst", "s"), rows)
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Measure and write the report."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("--angles", type=int, nargs="+", default=list(range(5, 80, 5)))
+    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--spatial-seeds", type=int, default=5)
+    parser.add_argument("--spatial-up-to", type=int, default=60, help="degrees")
+    parser.add_argument("--parts-seeds", type=int, default=5)
+    parser.add_argument("--out", type=Path, default=RESULTS / "turning.md")
+    options = parser.parse_args(argv)
+    settings = [s for s in SPATIAL if s[0] <= options.spatial_up_to]
+    begin = time.perf_counter()
+    turn(planar(10), 0)  # compiles
+    given = " ".join(sys.argv[1:] if argv is None else argv)
+    shifts = len(colony._HEATS) * colony._ANNEALING
+    parts = [
+        "# Turning by arm motion alone",
+        f"`python -m benchmarks.studies.attitude.turning {given}".rstrip()
+        + "`, times on a machine that did other work.",
+        "Errors are the largest over all seeds. The oracle is the least joint path that ends "
+        "within half a degree of the goal, up to which the search counts an error as none.",
+        f"## Planar, {options.seeds} seeds",
+        planar_table(options.angles, options.seeds),
+        f"## Three posture axes, {options.spatial_seeds} seeds",
+        spatial_table(settings, options.spatial_seeds),
+    ]
+    if options.parts_seeds:
+        parts += [
+            "## What the ants contribute",
+            f"30, 60 and 75 degrees, {options.parts_seeds} seeds other than above. Annealing tries "
+            f"{shifts} paths for each layer in every row; a cycle of ants tries 30 paths and 200 "
+            "shifts more.",
+            parts_table((30, 60, 75), options.parts_seeds),
+        ]
+    parts.append(f"All in {(time.perf_counter() - begin) / 60:.0f} minutes.")
+    publish("\n\n".join(parts) + "\n", options.out)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,191 @@
+"""A dynamic programme over base offsets, postures and yaw: the colony's rival in the plane.
+
+States are (layer, base offset, posture, yaw bin). Steps and nodes cost what they cost the colony,
+by the same functions; a collision is forbidden here. As in `oracle`, each state keeps the true yaw
+of its cheapest way, so that rounding does not add up over the layers, and its clearance is asked
+for at that yaw: one distance query for each state that a way leads to.
+
+In what sense it is exact: its value is the cost of the path that it returns. That is no less than
+the optimum of the lattice, and may be above it, as of two ways into one bin only the cheaper one
+lives on, although the other's yaw, less than a bin away, might have been worth more in the end.
+
+States are dropped from which the goal would cost more than a path that is already known: a coarser
+run's. What is still to come is bounded from below by the cost to go of the base origin alone, which
+lies inside the robot at any attitude.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from ffsr_plan.robots.shape_arrays import ROUND
+from ffsr_plan.search.postures.colony import _MISSED, ground_of
+from ffsr_plan.search.postures.cost_kernels import (
+    CLOSE_ENOUGH,
+    DELTA_D,
+    REACH,
+    angle_to,
+    clearance_at,
+    compose,
+    edge_length,
+    is_barred,
+    is_free,
+    node_cost,
+    working_room,
+)
+from ffsr_plan.search.postures.lower_bound import _origin_inside
+from ffsr_plan.search.postures.walk_kernels import cost_to_go
+
+REACHABLE = math.radians(20.0)
+
+
+class Way(NamedTuple):
+    """What the programme found."""
+
+    path: np.ndarray
+    """(m + 1, 2) base offset and posture on each layer of the cheapest way."""
+    cost: float
+    """[m]; infinite where no way leads to the goal."""
+    queries: int
+    """Distances from the robot to the obstacles that were asked for."""
+
+
+def cheapest_way(lattice, bins, reach=REACHABLE, ceiling=np.inf, ground=None):
+    """The cheapest way from start to goal with the yaw in bins.
+
+    Args:
+        lattice: of a robot that turns in its plane.
+        bins: an odd number.
+        reach: the bins share the yaws from -reach to reach [rad]; ways beyond are given up.
+        ceiling: cost of a path that is known [m]; only ways no dearer are found.
+        ground: as of `ground_of`, if there is one already.
+    """
+    ground = ground_of(lattice) if ground is None else ground
+    turns = ground.turns
+    assert not np.any(turns[..., :2]), "only for robots that turn in their plane"
+    assert bins % 2 == 1
+    ahead = least_to_go(lattice, ground)
+    m, count, offsets = len(turns), len(ground.successors), len(ground.across)
+    before = np.full((m + 1, count, bins, offsets), -1, dtype=np.int32)
+    path = np.empty((m + 1, 2), dtype=np.int64)
+    cost, queries = _programme(
+        ground, 2.0 * np.arctan2(turns[..., 2], turns[..., 3]), ahead, 2.0 * reach / bins,
+        float(_MISSED[1]), ceiling + 1e-9, before, path,
+    )  # fmt: skip
+    return Way(path, cost, queries)
+
+
+def coarse_to_fine(lattice, bins, reach=REACHABLE, ground=None):
+    """The same, each number of `bins` below the cost that the ones before it came to."""
+    best, queries = Way(np.empty((0, 2)), np.inf, 0), 0
+    for number in bins:
+        way = cheapest_way(lattice, number, reach, best.cost, ground)
+        queries += way.queries
+        best = way if way.cost < best.cost else best
+    return best._replace(queries=queries)
+
+
+def least_to_go(lattice, ground):
+    """(m + 1, b, n) cost [m] that no way from a node to the goal falls below, at any attitude."""
+    point = np.zeros((*ground.frames.shape[:2], 1, 15))
+    point[..., [0, 4, 8]] = 1.0
+    inside = _origin_inside(lattice)
+    shrunk = ground._replace(
+        obstacles=ground.obstacles._replace(
+            kinds=np.array([ROUND] if inside else [], dtype=np.int64)
+        ),
+        frames=point,
+        centers=np.zeros_like(ground.centers),
+    )
+    return cost_to_go(shrunk, np.tile(ground.start, (len(point), 1)))
+
+
+@njit  # not kept on disk, where it would outlive changes of the colony's kernels
+def _programme(ground, yaw_steps, ahead, width, weight, ceiling, before, path):
+    m, count, bins, offsets = len(before) - 1, *before.shape[1:]
+    steps, half = ground.successors.shape[1], bins // 2
+    room, quat, delta_d = working_room(), np.empty(4), ground.numbers[DELTA_D]
+    free = is_free(ground)
+    shape = count, bins, offsets
+    cost, yaw = np.full(shape, np.inf), np.zeros(shape)
+    new_cost, new_yaw = cost.copy(), yaw.copy()
+    lengths = np.empty((steps, offsets, offsets))
+    cost[ground.origin[1], half, ground.origin[0]] = 0.0
+    queries = 0
+    for i in range(m):
+        new_cost[:] = np.inf
+        for p in range(count):
+            if not np.any(cost[p] < np.inf):
+                continue
+            for step in range(steps):
+                for b in range(offsets):
+                    for b_on in range(offsets):
+                        lengths[step, b, b_on] = edge_length(
+                            delta_d, ground.across[b, b_on], ground.bends[i, p, step]
+                        )
+            for k in range(bins):
+                for b in range(offsets):
+                    so_far = cost[p, k, b]
+                    if so_far == np.inf:
+                        continue
+                    for step in range(steps):
+                        on = ground.successors[p, step]
+                        if on < 0 or not ground.allowed[i + 1, on]:
+                            continue
+                        turned = yaw[p, k, b] + yaw_steps[i, p, step]
+                        k_on = math.floor(turned / width + 0.5) + half
+                        if k_on < 0 or k_on >= bins:
+                            continue
+                        for b_on in range(offsets):
+                            total = so_far + lengths[step, b, b_on]
+                            if total < new_cost[on, k_on, b_on] and not (
+                                len(ground.barred) and is_barred(ground.barred, i, b, p, b_on, on)
+                            ):
+                                new_cost[on, k_on, b_on] = total
+                                new_yaw[on, k_on, b_on] = turned
+                                before[i + 1, on, k_on, b_on] = (p * bins + k) * offsets + b
+        for p in range(count):
+            for k in range(bins):
+                for b in range(offsets):
+                    arrival = new_cost[p, k, b]
+                    new_cost[p, k, b] = np.inf
+                    least = arrival + ahead[i + 1, b, p]
+                    if least == np.inf or least > ceiling:
+                        continue
+                    queries += 1
+                    _turned(ground, new_yaw[p, k, b], quat)
+                    clearance = np.inf
+                    if not free:
+                        clearance = clearance_at(
+                            ground.obstacles, ground.frames[i + 1, p], ground.places[i + 1, b],
+                            ground.centers[i + 1, p], quat, room,
+                        )  # fmt: skip
+                    if clearance > 0.0:
+                        new_cost[p, k, b] = arrival + node_cost(
+                            ground.numbers, clearance, i + 1 < m
+                        )
+        cost, new_cost = new_cost, cost
+        yaw, new_yaw = new_yaw, yaw
+    best, end = np.inf, -1
+    b, p = ground.origin
+    for k in range(bins):
+        total = cost[p, k, b]
+        if ground.numbers[REACH] > 0.0 and total < np.inf:
+            _turned(ground, yaw[p, k, b], quat)
+            total += weight * max(0.0, angle_to(quat, ground.goal) - CLOSE_ENOUGH)
+        if total < best and total <= ceiling:
+            best, end = total, (p * bins + k) * offsets + b
+    if best < np.inf:
+        for i in range(m, -1, -1):
+            b, k, p = end % offsets, end // offsets % bins, end // (offsets * bins)
+            path[i, 0], path[i, 1] = b, p
+            end = before[i, p, k, b]
+    return best, queries
+
+
+@njit
+def _turned(ground, yaw, quat):
+    """Attitude of the base, turned in its plane by `yaw` since the start."""
+    compose(ground.start, np.array([0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)]), quat)

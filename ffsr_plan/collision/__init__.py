@@ -1,0 +1,1 @@
+"""Distances between the robot's shapes and obstacles, and between its links."""

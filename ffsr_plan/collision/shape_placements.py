@@ -1,0 +1,59 @@
+"""Where the collision shapes are: base pose, kinematics of the arms, placement on the link."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.robots.kinematics import turned
+from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.scene.scene import Scene
+
+
+class Placements(NamedTuple):
+    """The g collision shapes of a robot in the world, K times."""
+
+    frames: Array
+    """(K, g, 15): rotation (9, row by row; shape axes to world axes), position [m], size [m]."""
+
+    @property
+    def rotations(self) -> Array:
+        """(K, g, 3, 3), shape axes to world axes."""
+        return self.frames[..., :9].reshape(*self.frames.shape[:2], 3, 3)
+
+    @property
+    def positions(self) -> Array:
+        """(K, g, 3) [m]."""
+        return self.frames[..., 9:12]
+
+
+def shape_placements(robot: SpaceRobot, configurations: Array) -> Placements:
+    """Placements of all collision shapes at configurations (K, nq)."""
+    poses = robot.tree.poses(robot.joint_values(configurations))
+    shapes = robot.primitives
+    base = rotations.matrix(configurations[:, 3:7])[:, None]
+    links = base @ poses.rotations[:, shapes.links]
+    origins = configurations[:, None, :3] + turned(base, poses.origins[:, shapes.links])
+    count = links.shape[:2]
+    return Placements(
+        np.concatenate(
+            [
+                (links @ shapes.rotations).reshape(*count, 9),
+                origins + turned(links, shapes.positions),
+                np.broadcast_to(shapes.sizes, (*count, 3)),
+            ],
+            axis=2,
+        )
+    )
+
+
+def near_track(scene: Scene, positions: Array, within: float) -> Flags:
+    """(N,) which spheres come so near [m] to any of the positions (..., 3) [m]."""
+    track = positions.reshape(-1, 3)
+    near = np.zeros(len(scene), dtype=bool)
+    for k, (center, radius) in enumerate(zip(scene.centers, scene.radii, strict=True)):
+        near[k] = np.any(np.linalg.norm(track - center, axis=1) < within + radius)
+    return near

@@ -1,0 +1,1 @@
+"""Arrays, checks, errors, rotations and files: what every other folder uses."""

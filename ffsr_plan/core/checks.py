@@ -1,0 +1,102 @@
+"""Checks on what users hand over: each returns the clean value or raises `InvalidInput`."""
+
+from __future__ import annotations
+
+import numbers
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ffsr_plan.core.arrays import Array, frozen
+from ffsr_plan.core.errors import InvalidInput, unknown_name
+
+_HUGE = 1e9  # metres or radians
+FARTHEST = 1e5
+"""Most metres of any coordinate in the world: farther out, floating-point numbers could not tell
+apart what `edges.ROUNDING` allows for."""
+
+
+def finite_array(
+    what: str, value: ArrayLike, shape: tuple[int, ...], at_most: float = _HUGE
+) -> Array:
+    """A read-only float copy of `value`; -1 in `shape` stands for any length."""
+    wanted = "x".join("N" if n < 0 else str(n) for n in shape)
+    allowed = f"finite numbers of at most {at_most:g}, of shape ({wanted})"
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InvalidInput(what, value, allowed) from None
+    if array.size == 0 and 0 in [max(n, 0) for n in shape]:
+        array = array.reshape([max(n, 0) for n in shape])
+    fits = array.ndim == len(shape) and all(
+        n < 0 or n == got for n, got in zip(shape, array.shape, strict=True)
+    )
+    if not fits:
+        raise InvalidInput(f"{what} (shape {array.shape})", value, allowed)
+    if not np.all(np.abs(array) <= at_most):  # NaN fails too
+        raise InvalidInput(what, value, allowed)
+    return frozen(array)
+
+
+def number(
+    what: str,
+    value: object,
+    *,
+    above: float = -np.inf,
+    below: float = np.inf,
+    at_least: float = -np.inf,
+    at_most: float = np.inf,
+) -> float:
+    """A finite float strictly inside (above, below) and in [at_least, at_most]."""
+    bounds = [
+        f"greater than {above:g}" if above > -np.inf else "",
+        f"at least {at_least:g}" if at_least > -np.inf else "",
+        f"less than {below:g}" if below < np.inf else "",
+        f"at most {at_most:g}" if at_most < np.inf else "",
+    ]
+    allowed = " and ".join(["a finite number", *filter(None, bounds)])
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
+        raise InvalidInput(what, value, allowed)
+    result = float(value)
+    if not (np.isfinite(result) and above < result < below and at_least <= result <= at_most):
+        raise InvalidInput(what, value, allowed)
+    return result
+
+
+def whole_number(what: str, value: object, *, at_least: int, at_most: int | None = None) -> int:
+    """An int in [at_least, at_most]."""
+    allowed = f"a whole number of at least {at_least}"
+    allowed += "" if at_most is None else f" and at most {at_most}"
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Integral):
+        raise InvalidInput(what, value, allowed)
+    if int(value) < at_least or (at_most is not None and int(value) > at_most):
+        raise InvalidInput(what, value, allowed)
+    return int(value)
+
+
+def truth(what: str, value: object) -> bool:
+    """True or False, and nothing that merely counts as one."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise InvalidInput(what, value, "True or False")
+    return bool(value)
+
+
+def one_of(what: str, value: object, names: Sequence[str]) -> str:
+    """`value`, if it is one of `names`; otherwise the nearest name is suggested."""
+    if not isinstance(value, str) or value not in names:
+        raise unknown_name(what, value, names)
+    return value
+
+
+def unit_quaternion(what: str, value: ArrayLike) -> Array:
+    """A unit quaternion (x, y, z, w), within 1e-6 of norm one; rounding beyond that is refused.
+
+    The tiny remainder is divided out, because a norm of 1 + 1e-7 would show up as a momentum
+    residual of the same size.
+    """
+    quat = finite_array(what, value, (4,))
+    norm = float(np.linalg.norm(quat))
+    if abs(norm - 1.0) > 1e-6:
+        raise InvalidInput(what, value, f"a unit quaternion (x, y, z, w); this norm is {norm:.9g}")
+    return frozen(quat / norm)

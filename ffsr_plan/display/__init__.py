@@ -1,0 +1,1 @@
+"""Pages, live views and figures."""

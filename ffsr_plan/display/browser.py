@@ -1,0 +1,64 @@
+"""How a page comes to be seen: in a notebook, in a browser, or by its address alone."""
+
+from __future__ import annotations
+
+import os
+import sys
+import webbrowser
+
+from ffsr_plan.core.checks import truth
+from ffsr_plan.display.page_server import PageServer
+
+
+def in_notebook() -> bool:
+    """Whether this process is the kernel of a notebook."""
+    return hasattr(_shell(), "kernel")
+
+
+def at_prompt() -> bool:
+    """Whether somebody types the statements: in a notebook, IPython or Python's own prompt."""
+    return _shell() is not None or hasattr(sys, "ps1") or bool(sys.flags.interactive)
+
+
+def open_in_browser(url: str) -> bool:
+    """Open a page in the user's browser; whether there is one, apart from those for terminals."""
+    try:
+        browser = webbrowser.get()
+    except webbrowser.Error:
+        return False
+    if type(browser) is webbrowser.GenericBrowser and "BROWSER" not in os.environ:
+        return False  # it would take over the terminal
+    return browser.open(url)
+
+
+def serve(
+    page: str, port: int = 0, block: bool | None = None, open_browser: bool | None = None
+) -> PageServer:
+    """Serve a page on 127.0.0.1.
+
+    Args:
+        page: the HTML text.
+        port: 0 for any that is free.
+        block: whether to return only when Ctrl-C has ended it; by default in scripts, whose end
+            would be the server's, and not where statements are typed.
+        open_browser: whether to open the user's browser; by default unless in a notebook, which
+            shows the page by itself.
+
+    Raises:
+        InvalidInput: a port that cannot be had, or what is neither True, False nor None.
+    """
+    block = not at_prompt() if block is None else truth("block", block)
+    opens = not in_notebook() if open_browser is None else truth("open_browser", open_browser)
+    server = PageServer(page, port)
+    if opens:
+        open_in_browser(server.url)
+    if block:
+        print(f"{server.url} shows the plan until Ctrl-C")
+        server.wait()
+    return server
+
+
+def _shell() -> object:
+    """IPython's shell, if this process has one."""
+    ipython = sys.modules.get("IPython")
+    return None if ipython is None else ipython.get_ipython()

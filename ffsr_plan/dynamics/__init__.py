@@ -1,0 +1,1 @@
+"""Momentum conservation: base reaction, motions, wheel momentum, inverse dynamics."""

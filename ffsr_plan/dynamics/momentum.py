@@ -1,0 +1,110 @@
+"""Momentum conservation: how the base answers when the arms move.
+
+The centroidal momentum matrix A_g(q) = [A_b A_theta] (6 x nv; linear rows, then angular about the
+centre of mass, world axes) maps velocities to momentum. Zero momentum determines the base.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.errors import unknown_name
+from ffsr_plan.core.rotations import IDENTITY, angle_rate_matrix, to_angles
+from ffsr_plan.robots.kinematics import turned
+from ffsr_plan.robots.robot import SpaceRobot
+
+
+def connection(robot: SpaceRobot, q: ArrayLike) -> Array:
+    """The mechanical connection A(theta), (3, nd).
+
+    At zero angular momentum the base turns at omega = A theta' [rad/s, base frame], whatever the
+    thrusters do along the translation. A depends on the joints alone, not on the base pose.
+
+    Args:
+        robot: the robot.
+        q: (nq,) configuration.
+    """
+    q = robot.check_configuration("q", q)
+    return np.asarray(connections(robot, robot.joint_values(q)[None])[0])
+
+
+def connections(robot: SpaceRobot, joint_values: Array) -> Array:
+    """A(theta) for many joint values (N, nd) at once: (N, 3, nd); unchecked."""
+    if robot.nd == 0:
+        return np.zeros((len(joint_values), 3, 0))
+    angular = angular_maps(robot, joint_values)
+    return np.asarray(-np.linalg.solve(angular[:, :, :3], angular[:, :, 3:]), dtype=np.float64)
+
+
+def angular_maps(robot: SpaceRobot, joint_values: Array) -> Array:
+    """(N, 3, 3 + nd) from base angular velocity (3,) and joint rates (nd,) to angular momentum.
+
+    About the centre of mass, in base axes [N m s], for joint values (N, nd); unchecked.
+    """
+    data = robot.model.createData()
+    configurations = robot.assemble(np.zeros(3), IDENTITY, joint_values)
+    angular = np.empty((len(joint_values), 3, robot.model.nv - 3))
+    for k, q in enumerate(configurations):
+        pin.computeCentroidalMap(robot.model, data, q)
+        angular[k] = data.Ag[3:, 3:]  # the base's linear columns carry no angular momentum
+    return angular
+
+
+def centers_of_mass(robot: SpaceRobot, joint_values: Array) -> Array:
+    """(N, 3) centre of mass of the whole robot in base axes, from the base origin [m]; unchecked.
+
+    Args:
+        robot: the robot.
+        joint_values: (N, nd) [rad or m].
+    """
+    bodies = list(robot.model.inertias)[1:]
+    masses = np.array([body.mass for body in bodies])
+    levers = np.array([body.lever for body in bodies])
+    poses = robot.tree.poses(joint_values)
+    centers = poses.origins + turned(poses.rotations, levers)
+    return np.asarray(np.einsum("b,kbi->ki", masses / masses.sum(), centers))
+
+
+def attitude_rate_map(robot: SpaceRobot, q: ArrayLike) -> Array:
+    """G of Eq. 1, (3, nd): (alpha', beta', gamma') = G theta'.
+
+    G = E(Theta)^-1 A(theta), E from `attitude.angle_rate_matrix`.
+
+    Raises:
+        InvalidInput: beta = +-90 degrees, where the ZYX angles are singular.
+    """
+    q = robot.check_configuration("q", q)
+    rates = np.linalg.solve(angle_rate_matrix(to_angles(q[3:7])), connection(robot, q))
+    return np.asarray(rates, dtype=np.float64)
+
+
+def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
+    """Generalized Jacobian J* of a frame, (6, nd), free-floating (Umetani and Yoshida 1989).
+
+    J* = J_theta - J_b A_b^-1 A_theta: the frame's velocity at zero linear and angular momentum is
+    J* theta'. Rows: linear [m/s], then angular [rad/s], in world axes at the frame's origin
+    (LOCAL_WORLD_ALIGNED).
+
+    Args:
+        robot: the robot.
+        q: (nq,) configuration.
+        frame: name of a link, joint or other frame of the model.
+
+    Raises:
+        InvalidInput: unknown frame, with the nearest name.
+    """
+    q = robot.check_configuration("q", q)
+    model = robot.model
+    if not model.existFrame(frame):
+        raise unknown_name("frame", frame, [f.name for f in model.frames])
+    data = model.createData()
+    pin.computeCentroidalMap(model, data, q)
+    momentum_map = np.array(data.Ag)
+    jacobian = pin.computeFrameJacobian(
+        model, data, q, model.getFrameId(frame), pin.LOCAL_WORLD_ALIGNED
+    )
+    base_rate = np.linalg.solve(momentum_map[:, :6], momentum_map[:, 6:])
+    return np.asarray(jacobian[:, 6:] - jacobian[:, :6] @ base_rate)

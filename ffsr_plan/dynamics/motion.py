@@ -1,0 +1,155 @@
+"""`Motion`: the continuous whole-body motion through a sequence of corners.
+
+Between corners the joints move linearly. What the base does follows from the mode:
+
+free-flying    thrusters move its origin linearly, its attitude reacts to the arms
+attitude-held  thrusters move its origin linearly, wheels turn it steadily from start to goal
+free-floating  nothing actuates it: attitude and position react, the centre of mass stays put
+"""
+
+from __future__ import annotations
+
+import copy
+from functools import cached_property
+
+import numpy as np
+
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.dynamics.momentum import centers_of_mass
+from ffsr_plan.dynamics.reaction import Reaction
+from ffsr_plan.robots.robot import SpaceRobot
+
+MODES = ("free-flying", "attitude-held", "free-floating")
+
+
+class Motion:
+    """Configurations along edges 0 .. m-1, each run from time 0 to 1.
+
+    Attributes:
+        robot: the robot.
+        mode: one of `MODES`.
+        positions: (m + 1, 3) base origin at the corners, world [m].
+        joint_values: (m + 1, nd) at the corners [rad or m].
+        attitudes: (m + 1, 4) base attitude at the corners (xyzw), reaction included.
+    """
+
+    def __init__(
+        self,
+        robot: SpaceRobot,
+        mode: str,
+        start: Array,
+        goal: Array,
+        positions: Array,
+        joint_values: Array | None = None,
+    ) -> None:
+        """The motion from `start` to `goal` (nq,) through base positions (m + 1, 3).
+
+        The goal's attitude counts in the mode `attitude-held` only; where the robot floats, the
+        positions count for their number alone.
+
+        Args:
+            robot: the robot.
+            mode: one of `MODES`.
+            start: (nq,).
+            goal: (nq,).
+            positions: (m + 1, 3) base origin at the corners, world [m].
+            joint_values: (m + 1, nd) at the corners; without them the joints move steadily from
+                start to goal, continuous ones the shorter way round.
+        """
+        self.robot, self.mode = robot, mode
+        self._start, self._goal = start[3:7], goal[3:7]
+        self._origin = start[:3]
+        self._progress = np.arange(len(positions)) / (len(positions) - 1)
+        self._straight = joint_values is None
+        if joint_values is None:
+            travel = robot.joint_change(start, goal)
+            joint_values = robot.joint_values(start) + self._progress[:, None] * travel
+        self.joint_values = frozen(np.array(joint_values, dtype=np.float64))
+        self.positions = frozen(np.array(positions, dtype=np.float64))
+        self.attitudes = frozen(self._attitudes(self._progress))
+        if self.floats:
+            self.positions = frozen(self._afloat(self.attitudes, self.joint_values))
+
+    @property
+    def edges(self) -> int:
+        """m, their number."""
+        return len(self.positions) - 1
+
+    @property
+    def reacts(self) -> bool:
+        """Whether the attitude follows from the arms' motion."""
+        return self.mode != "attitude-held"
+
+    @property
+    def floats(self) -> bool:
+        """Whether the base's position follows from the arms' motion too."""
+        return self.mode == "free-floating"
+
+    def base_steps(self) -> Array:
+        """(m, 3) what thrusters move the base origin by over each edge, world axes [m]."""
+        steps: Array = np.diff(self.positions, axis=0)
+        return np.zeros_like(steps) if self.floats else steps
+
+    @cached_property
+    def reaction(self) -> Reaction:
+        """The base rotation that the joint path brings about; as one segment if it is straight."""
+        return Reaction(
+            self.robot, self.joint_values[[0, -1]] if self._straight else self.joint_values
+        )
+
+    @cached_property
+    def _turned(self) -> Array:
+        """(m + 1, 4) attitudes at the corners of a joint path that is not straight."""
+        return self.reaction.attitudes(self._start)
+
+    @property
+    def turn(self) -> Array:
+        """(3,) angular velocity of a base that does not react, base axes [rad per edge]."""
+        whole = rotations.log(rotations.multiply(rotations.inverse(self._start), self._goal))
+        return whole / self.edges
+
+    def displaced(self, offsets: Array) -> Motion:
+        """The same motion with the base displaced by (m + 1, 3) [m] at the corners."""
+        twin = copy.copy(self)
+        twin.positions = frozen(self.positions + offsets)
+        return twin
+
+    def configurations(self) -> Array:
+        """(m + 1, nq) configurations at the corners."""
+        return self.robot.assemble(self.positions, self.attitudes, self.joint_values)
+
+    def at(self, edge: IntArray, time: Array) -> Array:
+        """(N, nq) configurations on `edge` (N,) at `time` (N,) in [0, 1]."""
+        t = time[:, None]
+        joints = self.joints_at(edge, time)
+        quat = self._attitudes((edge + time) / self.edges)
+        if self.floats:
+            position = self._afloat(quat, joints)
+        else:
+            position = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
+        return self.robot.assemble(position, quat, joints)
+
+    def joints_at(self, edge: IntArray, time: Array) -> Array:
+        """(N, nd) joint values there, continuous joints without a jump at half a turn."""
+        t = time[:, None]
+        values: Array = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
+        return values
+
+    def _afloat(self, quats: Array, joint_values: Array) -> Array:
+        """(N, 3) base origin at attitudes (N, 4) and joints (N, nd), the centre of mass at rest."""
+        begin = np.vstack([self.joint_values[:1], joint_values])
+        centers = centers_of_mass(self.robot, begin)
+        turned = rotations.rotate(np.vstack([self._start, quats]), centers)
+        return np.asarray(self._origin + turned[0] - turned[1:])
+
+    def _attitudes(self, progress: Array) -> Array:
+        """(N, 4) at path parameters (N,) from 0 to 1; translation turns nothing."""
+        if not self.reacts:
+            return rotations.slerp(self._start, self._goal, progress)
+        if self._straight:
+            turned = self.reaction.rotation(np.zeros(len(progress), dtype=np.int64), progress)
+            return rotations.multiply(self._start, turned)
+        scaled = progress * self.edges
+        edge = np.minimum(scaled.astype(np.int64), self.edges - 1)
+        return rotations.multiply(self._turned[edge], self.reaction.rotation(edge, scaled - edge))

@@ -1,0 +1,134 @@
+"""The rotation of the base along a path of the joints, integrated on the rotation group.
+
+Along a straight joint segment the angular velocity omega(t) = A(theta(t)) theta' is a known, smooth
+function of t that does not depend on the attitude. It is expanded in Legendre polynomials from its
+values at Gauss points; the attitude then follows from R' = R [omega]x by sixth-order Magnus steps
+(Blanes, Casas and Ros 2000), which stay on the group.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.errors import FfsrPlanError
+from ffsr_plan.dynamics.momentum import connections
+from ffsr_plan.robots.robot import SpaceRobot
+
+_ORDER = 8
+_X, _WEIGHTS = legendre.leggauss(_ORDER)
+_TO_COEFFICIENTS = (
+    legendre.legvander(_X, _ORDER - 1) * _WEIGHTS[:, None] * (np.arange(_ORDER) + 0.5)
+).T
+_MAGNUS_POINTS = np.array([0.5 - np.sqrt(15) / 10, 0.5, 0.5 + np.sqrt(15) / 10])
+_WHOLE_AND_HALVES = np.array([[0.0, 0.0, 0.5], [1.0, 0.5, 1.0]])  # begin and end of three steps
+_ANGLE_TOLERANCE = 1e-11
+_RATE_TOLERANCE = 1e-11
+_MOST_SUBSTEPS = 4096
+
+
+class Reaction:
+    """Base rotation along joint segments theta_0 -> theta_1 -> ... -> theta_m.
+
+    The result does not depend on timing, only on the path. Times run from 0 to 1 along an edge.
+
+    Attributes:
+        increments: (m, 4) rotation over each edge, in the base frame at its beginning (xyzw).
+        error: estimated angular error over any one edge [rad].
+    """
+
+    def __init__(self, robot: SpaceRobot, joint_values: Array) -> None:
+        """Integrate the reaction.
+
+        Args:
+            robot: the robot.
+            joint_values: (m + 1, nd) the corners of the joint path.
+        """
+        steps: Array = np.diff(joint_values, axis=0)
+        self._integrate(robot, joint_values[:-1], steps)
+
+    @classmethod
+    def of_segments(cls, robot: SpaceRobot, begin: Array, steps: Array) -> Reaction:
+        """The same for segments (m, nd) that do not follow one another, from `begin` by `steps`."""
+        reaction = cls.__new__(cls)
+        reaction._integrate(robot, begin, steps)
+        return reaction
+
+    def _integrate(self, robot: SpaceRobot, begin: Array, steps: Array) -> None:
+        largest = float(np.max(np.abs(steps), initial=0.0))
+        substeps = max(1, int(np.ceil(largest / 0.2)))
+        while True:
+            self._expand(robot, begin, steps, substeps)
+            if self._converged():
+                break
+            substeps *= 2
+            if substeps > _MOST_SUBSTEPS:
+                raise FfsrPlanError(
+                    f"the base reaction does not converge (joint step {largest:g} in one edge)"
+                )
+
+    def rotation(self, edge: IntArray, time: Array) -> Array:
+        """(N, 4) rotation from the beginning of `edge` (N,) to `time` (N,) on it (xyzw)."""
+        scaled = time * self._substeps
+        k = np.minimum(scaled.astype(np.int64), self._substeps - 1)
+        partial = self._step(self._coefficients[edge, k], np.zeros(len(k)), scaled - k)
+        return rotations.multiply(self._starts[edge, k], partial)
+
+    def attitudes(self, start: Array) -> Array:
+        """(m + 1, 4) attitudes at the corners, from `start` (4,) on."""
+        chain = [start]
+        for increment in self.increments:
+            chain.append(rotations.multiply(chain[-1], increment))
+        return np.array(chain)
+
+    def _expand(self, robot: SpaceRobot, begin: Array, steps: Array, substeps: int) -> None:
+        edges = len(steps)
+        times = (np.arange(substeps)[:, None] + 0.5 * (1.0 + _X)) / substeps
+        theta = begin[:, None, None] + times[None, :, :, None] * steps[:, None, None]
+        maps = connections(robot, theta.reshape(edges * substeps * _ORDER, robot.nd))
+        maps = maps.reshape(edges, substeps, _ORDER, 3, robot.nd)
+        # where the arms' shares cancel, their sizes and not the sum's set the rounding
+        self._scale = float(
+            np.max(np.einsum("eknij,ej->ekn", np.abs(maps), np.abs(steps)), initial=0)
+        )
+        rates = np.einsum("eknij,ej->ekni", maps, steps)
+        self._substeps = substeps
+        self._coefficients = np.einsum("ln,ekni->ekli", _TO_COEFFICIENTS, rates)
+        begin_end = np.broadcast_to(_WHOLE_AND_HALVES, (edges, substeps, 2, 3))
+        steps_made = self._step(
+            self._coefficients[:, :, None], begin_end[:, :, 0], begin_end[:, :, 1]
+        )
+        whole = steps_made[:, :, 0]
+        halves = rotations.multiply(steps_made[:, :, 1], steps_made[:, :, 2])
+        self.error = float(
+            np.max(np.sum(rotations.angle_between(whole, halves), axis=1), initial=0)
+        )
+        starts = [np.broadcast_to(rotations.IDENTITY, (edges, 4))]
+        for k in range(substeps):
+            starts.append(rotations.multiply(starts[-1], whole[:, k]))
+        self._starts = np.stack(starts[:-1], axis=1)
+        self.increments = starts[-1]
+
+    def _converged(self) -> bool:
+        sizes = np.max(np.abs(self._coefficients), axis=(0, 1, 3), initial=0.0)
+        return bool(self.error <= _ANGLE_TOLERANCE and sizes[-1] <= _RATE_TOLERANCE * self._scale)
+
+    def _step(self, coefficients: Array, begin: Array, end: Array) -> Array:
+        """Rotation (..., 4) over local times begin -> end (in [0, 1]) of a substep."""
+        length = end - begin
+        points = begin[..., None] + length[..., None] * _MAGNUS_POINTS
+        basis = legendre.legvander(2.0 * points - 1.0, _ORDER - 1)
+        # R' = R [omega] is the transpose of Y' = -[omega] Y, for which the series is stated
+        field = -np.einsum("...pl,...li->...pi", basis, coefficients)
+        field *= (length / self._substeps)[..., None, None]
+        first, middle, last = field[..., 0, :], field[..., 1, :], field[..., 2, :]
+        a1 = middle
+        a2 = np.sqrt(15.0) / 3.0 * (last - first)
+        a3 = 10.0 / 3.0 * (last - 2.0 * middle + first)
+        c1 = rotations.cross(a1, a2)
+        c2 = -rotations.cross(a1, 2.0 * a3 + c1) / 60.0
+        return rotations.exp(
+            -(a1 + a3 / 12.0 + rotations.cross(-20.0 * a1 - a3 + c1, a2 + c2) / 240.0)
+        )

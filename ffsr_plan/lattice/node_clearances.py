@@ -1,0 +1,65 @@
+"""Clearances of a lattice's nodes: exact where asked for, bounded from above elsewhere.
+
+Nodes of a layer differ by a translation, and a translation by x changes a clearance by x at most.
+So every node that was evaluated bounds its neighbours, and an exact search over optimistic bounds
+needs to evaluate only the nodes that its candidate paths pass: a fifth of them in common scenes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.proof.prover import Prover
+
+
+class NodeClearances:
+    """What is known of the clearance of each node.
+
+    Attributes:
+        bounds: (m + 1, n) upper bounds [m], exact where `known`; -inf where a layer lacks a node.
+        known: (m + 1, n) the nodes whose clearance has been evaluated, or that do not exist.
+        queries: evaluations so far.
+    """
+
+    def __init__(self, lattice: LayeredLattice, prover: Prover) -> None:
+        self._lattice, self._prover = lattice, prover
+        m, n, origin = lattice.divisions, lattice.size, lattice.origin
+        self.bounds: Array = np.full((m + 1, n), np.inf)
+        self.known: Flags = np.zeros((m + 1, n), dtype=bool)
+        ends = np.array([0, m])
+        self.bounds[ends], self.known[ends] = -np.inf, True
+        self.queries = 0
+        self.bounds[ends, origin] = self._ask(ends, np.zeros((2, 3)))
+        self._exact: Array | None = None
+
+    def _ask(self, layers: IntArray, offsets: Array) -> Array:
+        before = self._prover.queries
+        found = self._prover.clearances(layers, offsets)
+        self.queries += self._prover.queries - before  # none in an empty scene
+        return found
+
+    def learn(self, path: IntArray) -> IntArray:
+        """Evaluate the nodes of a path (m + 1,); the layers about which something new is known."""
+        layers = np.flatnonzero(~self.known[np.arange(len(path)), path])
+        if not len(layers):
+            return layers
+        nodes = path[layers]
+        found = self._ask(layers, self._lattice.offsets[nodes])
+        reach = found[:, None] + self._lattice.distances[nodes]
+        at = self.bounds[layers]
+        self.bounds[layers] = np.where(self.known[layers], at, np.minimum(at, reach))
+        self.bounds[layers, nodes], self.known[layers, nodes] = found, True
+        return layers
+
+    def exact(self) -> Array:
+        """(m + 1, n) clearances of all nodes [m]; NaN where a layer lacks a node."""
+        if self._exact is None:
+            for i in range(1, self._lattice.divisions):
+                missing = np.flatnonzero(~self.known[i])
+                layers = np.full(len(missing), i)
+                found = self._ask(layers, self._lattice.offsets[missing])
+                self.bounds[i, missing], self.known[i, missing] = found, True
+            self._exact = frozen(np.where(np.isneginf(self.bounds), np.nan, self.bounds))
+        return self._exact

@@ -1,0 +1,188 @@
+"""Beyond the lattice: from a certified lattice path to continuous offsets, F never higher.
+
+Lattice paths are a little too long because their slopes come in steps. On four levels, each with
+half the spacing of the one before, every layer is given the offsets around its present one, and the
+exact optimum over them is taken, edges certified lazily; again, while F falls and the path leans on
+the rim of what it was given.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise, product
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.lattice.edge_states import REFUSED
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.lattice.roadmap import rule_out
+from ffsr_plan.lattice.shortest_path import lazy_shortest_path
+from ffsr_plan.planning.plan import Plan
+from ffsr_plan.problem.objective import nearness, objective, path_length
+from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.proof.prover import Prover
+
+_LEVELS = 4
+_FINEST = 2**_LEVELS
+_ROUNDS = 8
+_REACH = 2  # offsets to either side, so five a layer and axis
+
+
+def refine(plan: Plan) -> Plan:
+    """Move a plan's nodes off the lattice to where F is lower; certified like the plan itself.
+
+    Offsets stay within the lattice's window, in steps of a sixteenth of its spacing.
+
+    Args:
+        plan: any plan; on a lattice with posture axes it is returned as it is.
+    """
+    if not isinstance(plan, Plan):
+        raise InvalidInput("plan", plan, "a Plan")
+    if plan.problem.lattice.postures:
+        return plan
+    lattice = LayeredLattice(plan.problem)
+    prover = Prover(lattice.nominal, plan.problem.scene, plan.problem.tolerance)
+    better = refined(plan, lattice, prover)
+    offsets = better.configurations[:, :3] - lattice.nominal.positions
+    least = prover.least_clearance(offsets, better.clearances)
+    return replace(better, certificate=better.certificate._replace(least_clearance=least))
+
+
+def refined(plan: Plan, lattice: LayeredLattice, prover: Prover) -> Plan:
+    """`refine` with a lattice and a prover that are there already; the proven clearance is left."""
+    if not lattice.problem.lattice.axes or lattice.problem.lattice.postures:
+        return plan  # one node a layer: nothing to move; or moving one changes all attitudes behind
+    descent = _Descent(plan, lattice, prover)
+    descent.run()
+    if not descent.objective < plan.objective:
+        return plan
+    offsets = descent.coordinates @ descent.unit
+    ends = descent.clearances
+    certificate = plan.certificate._replace(
+        edges_free=plan.certificate.edges_free + descent.free,
+        edges_refused=plan.certificate.edges_refused + descent.asked - descent.free,
+        node_queries=plan.certificate.node_queries + descent.nodes,
+        edge_queries=plan.certificate.edge_queries
+        + prover.queries
+        - descent.before
+        - descent.nodes,
+    )
+    return replace(
+        plan,
+        configurations=frozen(lattice.nominal.displaced(offsets).configurations()),
+        length=path_length(plan.problem, offsets),
+        objective=descent.objective,
+        clearances=frozen(ends),
+        certificate=certificate,
+    )
+
+
+class _Descent:
+    """A path in whole sixteenths of the lattice's spacing, going down in F."""
+
+    def __init__(self, plan: Plan, lattice: LayeredLattice, prover: Prover) -> None:
+        self._problem, self._prover = plan.problem, prover
+        settings = plan.problem.lattice
+        axes = [getattr(settings, name) for name in settings.axes]
+        self.unit = lattice.directions * (np.array([a.spacing for a in axes]) / _FINEST)[:, None]
+        """(axes, 3) displacement [m] of one sixteenth along each axis."""
+        self._rim = np.array([a.half_count for a in axes]) * _FINEST
+        across = plan.configurations[:, :3] - lattice.nominal.positions
+        sizes = np.sum(self.unit**2, axis=1)
+        self.coordinates: IntArray = np.rint(across @ self.unit.T / sizes).astype(np.int64)
+        self.clearances = np.array(plan.clearances)
+        self.objective = plan.objective
+        self._known: dict[tuple[int, bytes], float] = {}
+        self._verdicts: dict[tuple[int, bytes, bytes], Verdict] = {}
+        self.before = prover.queries
+        self.nodes = 0
+        steps = range(-_REACH, _REACH + 1)
+        self._around = np.array(list(product(steps, repeat=len(axes))), dtype=np.int64)
+
+    @property
+    def free(self) -> int:
+        """Edges proven free."""
+        return sum(v.free for v in self._verdicts.values())
+
+    @property
+    def asked(self) -> int:
+        """Edges asked for."""
+        return len(self._verdicts)
+
+    def run(self) -> None:
+        """Go down level by level."""
+        for level in range(1, _LEVELS + 1):
+            step = _FINEST // 2**level
+            for _ in range(_ROUNDS):
+                if not self._round(step):
+                    break
+
+    def _round(self, step: int) -> bool:
+        """Take the best of the offsets around; whether another round may help."""
+        choices, present = self._choices(step)
+        clearances = self._clearances(choices, present)
+        offsets = choices @ self.unit
+        node_costs = np.where(clearances > 0.0, nearness(self._problem, clearances), np.inf)
+        node_costs[[0, -1], 0] = 0.0
+        across = np.linalg.norm(offsets[1:, None] - offsets[:-1, :, None], axis=3)
+        steps = np.sqrt(self._problem.delta_d**2 + (across * self._problem.position_weight) ** 2)
+        status = np.zeros(steps.shape, dtype=np.int8)
+        path = lazy_shortest_path(
+            steps / self._problem.length_unit,
+            node_costs,
+            status,
+            0,
+            lambda path: self._objection(path, choices, offsets, clearances, status),
+        )
+        if path is None:
+            return False
+        layers = np.arange(len(path))
+        coordinates, ends = choices[layers, path], clearances[layers, path]
+        length = path_length(self._problem, coordinates @ self.unit)
+        value = objective(self._problem, length, ends)
+        if not value < self.objective * (1.0 - 1e-12):
+            return False
+        moved = np.abs(coordinates - self.coordinates)
+        self.coordinates, self.clearances, self.objective = coordinates, ends, value
+        return bool(np.any(moved == _REACH * step))
+
+    def _choices(self, step: int) -> tuple[IntArray, Flags]:
+        """(m + 1, w, axes) offsets around the present ones, and which of them are allowed."""
+        choices = self.coordinates[:, None] + step * self._around
+        present = np.all(np.abs(choices) <= self._rim, axis=2)
+        for end in (0, -1):
+            choices[end], present[end] = self.coordinates[end], False
+            present[end, 0] = True
+        return choices, present
+
+    def _clearances(self, choices: IntArray, present: Flags) -> Array:
+        """(m + 1, w) clearances, -inf where an offset is not allowed; each asked for once."""
+        found = np.full(present.shape, -np.inf)
+        for i, k in zip(*np.nonzero(present), strict=True):
+            key = (int(i), choices[i, k].tobytes())
+            if key not in self._known:
+                at = choices[i, k][None] @ self.unit
+                before = self._prover.queries
+                self._known[key] = float(self._prover.clearances(np.array([i]), at)[0])
+                self.nodes += self._prover.queries - before
+            found[i, k] = self._known[key]
+        return found
+
+    def _objection(
+        self, path: IntArray, choices: IntArray, offsets: Array, clearances: Array, status: States
+    ) -> int | None:
+        """Certify the edges of a path; note refusals in `status`, return the first one's layer."""
+        for i, (a, b) in enumerate(pairwise(path)):
+            key = (i, choices[i, a].tobytes(), choices[i + 1, b].tobytes())
+            verdict = self._verdicts.get(key)
+            if verdict is None:
+                ends = (float(clearances[i, a]), float(clearances[i + 1, b]))
+                verdict = self._prover.certify(i, offsets[i, a], offsets[i + 1, b], ends)
+                self._verdicts[key] = verdict
+            if not verdict.free:
+                status[i, a, b] = REFUSED
+                rule_out(status[i], offsets[i], offsets[i + 1], (int(a), int(b)), verdict)
+        refused = status[np.arange(len(path) - 1), path[:-1], path[1:]] == REFUSED
+        return int(np.argmax(refused)) if refused.any() else None

@@ -1,0 +1,224 @@
+"""`Roadmap`: a lattice and what is known of its nodes and edges, found out when it is asked for."""
+
+from __future__ import annotations
+
+import copy
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
+from ffsr_plan.core.errors import InvalidInput, NoPath
+from ffsr_plan.core.kernels import call
+from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.lattice.node_clearances import NodeClearances
+from ffsr_plan.problem.objective import nearness, objective, path_length
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.proof.prover import Prover
+
+
+class Certificate(NamedTuple):
+    """What was proven, and at what cost."""
+
+    edges_free: int
+    """Edges proven free, most of them by the clearances at their ends alone."""
+    edges_refused: int
+    """Edges refused, each for itself or for the sake of one beside it."""
+    node_queries: int
+    """Coal queries for the clearances of nodes: one a configuration, over all pairs."""
+    edge_queries: int
+    """Coal queries for all proofs, obstacles and self-collision together."""
+    least_clearance: float
+    """Proven lower bound on the clearance all along the returned path [m]."""
+
+
+class Roadmap:
+    """Nodes and edges of a lattice, and what is known of them.
+
+    Attributes:
+        lattice: the lattice.
+        prover: clearances and proofs for any offsets.
+        status: (m, n, n) what is known of each edge: UNKNOWN, FREE or REFUSED.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        """Set up the lattice; nodes are evaluated when they are first needed.
+
+        Raises:
+            StartInCollision, GoalInCollision: with link, obstacle and depth.
+            NoPath: if the arms collide with each other on the way, at every node alike.
+        """
+        if problem.lattice.postures:
+            raise InvalidInput(
+                "lattice postures", len(problem.lattice.postures),
+                "none: with them a node has no one attitude, and no roadmap can be made",
+            )  # fmt: skip
+        self.problem = problem
+        self.lattice = LayeredLattice(problem)
+        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)
+        self.prover.check_ends()
+        self.prover.check_self_collision()
+        self._nodes = NodeClearances(self.lattice, self.prover)
+        m, n = self.lattice.divisions, self.lattice.size
+        self.status: States = np.zeros((m, n, n), dtype=np.int8)
+        self._verdicts: dict[tuple[int, int, int], Verdict] = {}
+
+    @property
+    def clearances(self) -> Array:
+        """(m + 1, n) clearance of every node [m]; NaN where a layer lacks the node."""
+        return self._nodes.exact()
+
+    @property
+    def admissible(self) -> Flags:
+        """(m + 1, n) the nodes that touch nothing."""
+        return self._nodes.exact() > 0.0
+
+    def forget(self) -> Roadmap:
+        """The same nodes with nothing known of the edges: a clean start for another colony."""
+        twin = copy.copy(self)
+        twin.status = np.zeros_like(self.status)
+        twin._verdicts = {}
+        return twin
+
+    def certify(self, layer: int, tail: int, head: int) -> Verdict:
+        """The verdict on the edge from node `tail` of `layer` to node `head` of the next one."""
+        key = (layer, tail, head)
+        if key not in self._verdicts:
+            ends = (self._clearance(layer, tail), self._clearance(layer + 1, head))
+            offsets = self.lattice.offsets
+            verdict = self.prover.certify(layer, offsets[tail], offsets[head], ends)
+            self._verdicts[key] = verdict
+            self.status[key] = FREE if verdict.free else REFUSED
+            if not verdict.free:
+                rule_out(self.status[layer], offsets, offsets, (tail, head), verdict)
+        return self._verdicts[key]
+
+    def free(self, layer: int, tail: int, head: int) -> bool:
+        """Whether an edge is free, certifying it if that is not known yet."""
+        known = self.status[layer, tail, head]
+        return bool(known == FREE or (known == UNKNOWN and self.certify(layer, tail, head).free))
+
+    def prove_path(self, path: IntArray) -> bool:
+        """Certify every edge of a path (m + 1,) whose state is unknown; whether all are free."""
+        edges = [(i, int(j), int(k)) for i, (j, k) in enumerate(pairwise(path))]
+        verdicts = [self.free(*edge) for edge in edges]  # not only up to the first refusal
+        return all(verdicts)
+
+    def refused_layers(self, path: IntArray) -> IntArray:
+        """The layers that a path (m + 1,) leaves by an edge known to be refused."""
+        states = self.status[np.arange(len(self.status)), path[:-1], path[1:]]
+        return np.flatnonzero(states == REFUSED)
+
+    def prove_obvious(self) -> None:
+        """Mark the edges that the clearances at their ends prove free without a query."""
+        prover, base_travel = self.prover, self.lattice.base_travel
+        positive = np.where(self.admissible, self.clearances, np.nan)
+        for i in range(self.lattice.divisions):
+            travel = base_travel + (prover.speeds[i] + prover.rounding)
+            self.status[i][positive[i][:, None] + positive[i + 1] > travel] = FREE
+
+    def path_length(self, path: IntArray) -> float:
+        """L of Eq. 6 [m] of a path, node indices (m + 1,)."""
+        return path_length(self.problem, self.lattice.offsets[path])
+
+    def path_clearances(self, path: IntArray) -> Array:
+        """(m + 1,) clearances at the nodes of a path [m]."""
+        self._nodes.learn(path)
+        return self._nodes.bounds[np.arange(len(path)), path]
+
+    def objective(self, path: IntArray) -> float:
+        """F of Eq. 8 of a path, node indices (m + 1,), edges taken as free."""
+        return objective(self.problem, self.path_length(path), self.path_clearances(path))
+
+    def edge_costs(self) -> Array:
+        """(n, n) share of an edge in F: its length in length units."""
+        return self.lattice.steps / self.problem.length_unit
+
+    def node_costs(self) -> Array:
+        """(m + 1, n) share of a node in F: delta / d_imin; infinite where it may not be entered."""
+        self._nodes.exact()
+        return frozen(self.optimistic_node_costs())
+
+    def optimistic_node_costs(self, layers: slice | IntArray = slice(None)) -> Array:
+        """(k, n) lower bounds of `node_costs` from the nodes evaluated so far."""
+        bounds = self._nodes.bounds[layers]
+        costs = np.where(bounds > 0.0, nearness(self.problem, bounds), np.inf)
+        if isinstance(layers, slice):
+            costs[[0, -1], self.lattice.origin] = 0.0  # layers 0 and m do not count in Eq. 8
+        return costs
+
+    def evaluate_all(self) -> None:
+        """Evaluate every node now."""
+        self._nodes.exact()
+
+    def learn(self, path: IntArray) -> IntArray:
+        """Evaluate the nodes of a path (m + 1,); the inner layers of which more is known now."""
+        return self._nodes.learn(path)
+
+    def proofs(self) -> Certificate:
+        """What has been proven so far; no clearance of any path yet."""
+        return Certificate(
+            edges_free=int(np.count_nonzero(self.status == FREE)),
+            edges_refused=int(np.count_nonzero(self.status == REFUSED)),
+            node_queries=self._nodes.queries,
+            edge_queries=self.prover.queries - self._nodes.queries,
+            least_clearance=0.0,
+        )
+
+    def no_path(self) -> NoPath | None:
+        """Search the lattice from the start, certifying as needed; the error if it has no path."""
+        m, origin = self.lattice.divisions, self.lattice.origin
+        reached, admissible = [origin], self.admissible
+        for layer in range(m):
+            heads = np.flatnonzero(admissible[layer + 1]).tolist()
+            onwards = [k for k in heads if any(self.free(layer, j, k) for j in reached)]
+            if not onwards:
+                return NoPath(layer + 1, self._closing(layer), m)
+            reached = onwards
+        return None
+
+    def _clearance(self, layer: int, node: int) -> float:
+        if not self._nodes.known[layer, node]:
+            path = np.full(self.lattice.divisions + 1, self.lattice.origin)
+            path[layer] = node
+            self._nodes.learn(path)
+        return float(self._nodes.bounds[layer, node])
+
+    def _closing(self, layer: int) -> tuple[int | str, ...]:
+        """What blocks the edges of a layer that were looked at, and the nodes they lead to."""
+        offsets, found = self.lattice.offsets, set[int | str]()
+        for (i, tail, head), verdict in self._verdicts.items():
+            if i == layer and not verdict.free:
+                near = self.prover.nearest(i, offsets[tail], offsets[head], verdict.time)
+                found.add(near.other)
+        if layer + 1 < self.lattice.divisions:
+            for at in offsets[~self.admissible[layer + 1]]:
+                found.add(self.prover.nearest(layer + 1, at, at, 0.0).other)
+        return tuple(sorted(found, key=lambda name: (isinstance(name, str), name)))
+
+
+def rule_out(
+    status: States, tails: Array, heads: Array, edge: tuple[int, int], verdict: Verdict
+) -> None:
+    """Refuse every edge of a layer that passes, at the same time, within the depth just met.
+
+    Attitude and joints are the same there, and a translation shorter than the penetration depth
+    does not lead out of the obstacle.
+
+    Args:
+        status: (j, k) of the layer's edges, updated.
+        tails: (j, 3) offsets at the edges' beginnings [m].
+        heads: (k, 3) offsets at their ends [m].
+        edge: tail and head of the edge that was refused.
+        verdict: why.
+    """
+    depth, t = -verdict.least_clearance * (1.0 - 1e-9), verdict.time
+    if depth <= 0.0:
+        return
+    from ffsr_plan.lattice.refusal_kernel import refuse_near
+
+    met = (1.0 - t) * tails[edge[0]] + t * heads[edge[1]]
+    call(refuse_near, status, tails, heads, t, met, depth)

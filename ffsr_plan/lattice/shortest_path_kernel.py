@@ -1,0 +1,46 @@
+"""Shortest ways through layers, compiled; imported when they are first needed."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from ffsr_plan.core.arrays import Array, IntArray, States
+
+_REFUSED = -1
+
+
+@njit(cache=True, nogil=True)
+def extend(
+    first: int,
+    edge_costs: Array,
+    node_costs: Array,
+    status: States,
+    costs: Array,
+    before: IntArray,
+) -> None:
+    """Shortest ways from the start, layer after layer from `first` on (Bellman).
+
+    Args:
+        first: the first layer whose edges are to be looked at; `costs` hold up to it.
+        edge_costs: (m, n, n) or (1, n, n).
+        node_costs: (m + 1, n), infinite where a node may not be entered.
+        status: (m, n, n); refused edges are left out.
+        costs: (m + 1, n) least cost of reaching each node, updated.
+        before: (m + 1, n) the node that the shortest way comes from, updated.
+    """
+    m, n = len(status), status.shape[1]
+    for i in range(first, m):
+        edges = edge_costs[min(i, len(edge_costs) - 1)]
+        costs[i + 1] = np.inf
+        for j in range(n):
+            so_far = costs[i, j]
+            if so_far == np.inf:
+                continue
+            for k in range(n):
+                total = so_far + edges[j, k]
+                if total < costs[i + 1, k] and status[i, j, k] != _REFUSED:
+                    costs[i + 1, k] = total
+                    before[i + 1, k] = j
+        for k in range(n):
+            costs[i + 1, k] += node_costs[i + 1, k]

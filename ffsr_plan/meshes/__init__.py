@@ -1,0 +1,1 @@
+"""Triangle meshes: reading them, simpler hulls around them, covers by spheres and boxes."""

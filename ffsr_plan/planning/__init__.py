@@ -1,0 +1,1 @@
+"""Plans: the public `plan`, the `Plan` that it returns, and its file."""

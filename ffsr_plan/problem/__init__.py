@@ -1,0 +1,1 @@
+"""Planning problems: settings, objective and goals given by an end-effector pose."""

@@ -1,0 +1,1 @@
+"""Proofs that an edge is free: interval halving with a bound on travel."""

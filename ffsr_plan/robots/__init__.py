@@ -1,0 +1,1 @@
+"""Robots from URDF: validation, Pinocchio models, collision shapes, kinematics."""

@@ -1,0 +1,1 @@
+"""Satellites composed from a bus and arms."""

@@ -1,0 +1,188 @@
+"""Arms to be mounted on a bus: where their URDFs are found, and their joints that are locked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+import numpy as np
+
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.checks import number
+from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.robots.srdf import disabled_pairs
+from ffsr_plan.robots.urdf_validation import check_urdf, numbers, parse
+
+_UR = "ur_description/srdf/ur5.srdf"
+ARMS = {
+    "kinova": ("kinova_description/robots/kinova.urdf", ""),
+    "panda": ("panda_description/urdf/panda.urdf", "panda_description/srdf/panda.srdf"),
+    "so100": ("so_arm_description/urdf/so100.urdf", ""),
+    "so101": ("so_arm_description/urdf/so101.urdf", ""),
+    "ur10": ("ur_description/urdf/ur10_robot.urdf", _UR),  # of the same build as the UR5
+    "ur3": ("ur_description/urdf/ur3_robot.urdf", _UR),
+    "ur5": ("ur_description/urdf/ur5_robot.urdf", _UR),
+    "xarm7": ("xarm_description/urdf/xarm7.urdf", "xarm_description/srdf/xarm7.srdf"),
+    "z1": ("z1_description/urdf/z1.urdf", ""),
+}
+"""Arms of example-robot-data by name: URDF and SRDF below its `robots` folder."""
+
+
+class Arm(NamedTuple):
+    """An arm's URDF, checked, its locked joints fixed."""
+
+    robot: ElementTree.Element
+    root: str
+    """Name of the link that is mounted."""
+    folders: tuple[str, ...]
+    """Where its meshes are looked up."""
+    where: str
+    """What messages call it."""
+    may_touch: tuple[tuple[str, str], ...]
+    """Links that its SRDF exempts from the check for self-collision."""
+
+
+def arm_names() -> list[str]:
+    """Names of the arms that `compose` knows, all from example-robot-data."""
+    return sorted(ARMS)
+
+
+def load_arm(
+    source: str | Path, locked: Mapping[str, float], srdf: str | Path | None = None
+) -> Arm:
+    """Read an arm by name or from a `.urdf` file.
+
+    Args:
+        source: one of `arm_names()`, or a path.
+        locked: joints to be fixed, by the arm's own names, at a value [rad, or m where prismatic].
+            Joints that mimic one of these are fixed as well, where it puts them.
+        srdf: path to an SRDF; an arm of a name brings its own, where there is one.
+
+    Raises:
+        InvalidInput: no such arm or file, a URDF or SRDF that cannot be used, an unknown joint, a
+            value outside the joint's limits, or a joint that mimics one that is not locked.
+    """
+    path, own, folders = _find(source)
+    text = _read("arm", path)
+    where = f"arm {source}"
+    robot = parse(text, where)
+    mimics = _take_mimics(robot)
+    check_urdf(ElementTree.tostring(robot, encoding="unicode"), where)
+    _lock(robot, mimics, locked, where)
+    children = {str(child.get("link")) for child in robot.iterfind("joint/child")}
+    names = [str(link.get("name")) for link in robot.findall("link")]
+    root = next(name for name in names if name not in children)
+    told = own if srdf is None else Path(srdf)
+    pairs = disabled_pairs("" if told is None else _read("srdf", told), f"{where}, SRDF", names)
+    return Arm(robot, root, folders, where, pairs)
+
+
+def _read(what: str, path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidInput(what, str(path), f"a readable UTF-8 file ({error})") from None
+
+
+def _find(source: str | Path) -> tuple[Path, Path | None, tuple[str, ...]]:
+    """URDF, SRDF, and the folders of the meshes."""
+    path = Path(source)
+    if path.suffix == ".urdf":
+        if not path.is_file():
+            raise InvalidInput("arm", str(source), "an existing .urdf file, or the name of an arm")
+        return path, None, (str(path.parent.absolute()),)
+    if source not in ARMS:
+        raise unknown_name("arm", str(source), [*arm_names(), "or a path to a .urdf file"])
+    try:
+        data = distribution("example-robot-data").locate_file("cmeel.prefix/share")
+    except PackageNotFoundError:
+        allowed = "arms of example-robot-data, which is not installed here"
+        raise InvalidInput("arm", str(source), allowed) from None
+    share = Path(str(data))
+    urdf, srdf = (share / "example-robot-data" / "robots" / name for name in ARMS[str(source)])
+    return urdf, srdf if srdf.is_file() else None, (str(share),)
+
+
+def _take_mimics(robot: ElementTree.Element) -> dict[str, ElementTree.Element]:
+    """The `<mimic>` of each moving joint, taken out of the robot; fixed joints follow nothing."""
+    mimics = {}
+    for joint in robot.findall("joint"):
+        for mimic in joint.findall("mimic"):
+            joint.remove(mimic)
+            if joint.get("type") != "fixed":
+                mimics[str(joint.get("name"))] = mimic
+    return mimics
+
+
+def _lock(
+    robot: ElementTree.Element,
+    mimics: dict[str, ElementTree.Element],
+    locked: Mapping[str, float],
+    where: str,
+) -> None:
+    """Turn joints into fixed ones, in place."""
+    joints = {str(j.get("name")): j for j in robot.findall("joint") if j.get("type") != "fixed"}
+    free = [name for name in joints if name not in mimics]
+    values = {}
+    for name, value in locked.items():
+        if name not in free:
+            raise unknown_name(f"{where}, locked", name, free)
+        low, high = _limits(joints[name])
+        values[name] = number(f"{where}, locked '{name}'", value, at_least=low, at_most=high)
+    for name, mimic in mimics.items():
+        about, leader = f"{where}, joint '{name}', mimic", mimic.get("joint")
+        if leader not in free:
+            raise unknown_name(f"{about} joint", leader, free)
+        if leader not in values:
+            allowed = f"joints that move on their own; lock it with locked={{'{leader}': ...}}"
+            raise InvalidInput(about, leader, allowed)
+        (factor,) = numbers(f"{about} multiplier", mimic.get("multiplier", "1"), 1)
+        (offset,) = numbers(f"{about} offset", mimic.get("offset", "0"), 1)
+        values[name] = factor * values[leader] + offset
+    for name, value in values.items():
+        _fix(joints[name], value)
+
+
+def _limits(joint: ElementTree.Element) -> tuple[float, float]:
+    limit = joint.find("limit")
+    if joint.get("type") == "continuous" or limit is None:
+        return -np.inf, np.inf
+    return float(limit.get("lower", "0")), float(limit.get("upper", "0"))
+
+
+def _fix(joint: ElementTree.Element, value: float) -> None:
+    """Hold a joint at a value [rad or m], in place."""
+    origin = joint.find("origin")
+    if origin is None:
+        origin = ElementTree.SubElement(joint, "origin")
+    place = np.array([float(word) for word in origin.get("xyz", "0 0 0").split()])
+    gamma, beta, alpha = (float(word) for word in origin.get("rpy", "0 0 0").split())
+    turn = rotations.from_angles(np.array([alpha, beta, gamma]))
+    along = joint.find("axis")
+    words = "1 0 0" if along is None else str(along.get("xyz"))
+    axis = np.array([float(word) for word in words.split()])
+    axis /= np.linalg.norm(axis)
+    if joint.get("type") == "prismatic":
+        place = place + rotations.rotate(turn, value * axis)
+    else:
+        turn = rotations.multiply(turn, rotations.exp(value * axis))
+        origin.set("rpy", " ".join(map(repr, _rpy(rotations.matrix(turn)))))
+    origin.set("xyz", " ".join(map(repr, place.tolist())))
+    joint.set("type", "fixed")
+    for tag in ("axis", "limit"):
+        for element in joint.findall(tag):
+            joint.remove(element)
+
+
+def _rpy(rotation: Array) -> tuple[float, float, float]:
+    """Turns about the fixed x, y and z axes; exact also near the singularity of these angles."""
+    about_z = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+    about_y = float(np.arctan2(-rotation[2, 0], np.hypot(rotation[0, 0], rotation[1, 0])))
+    sine, cosine = np.sin(about_z), np.cos(about_z)
+    # what is left once the turn about z is undone: whatever that was, the three agree
+    rest = -sine * rotation[0] + cosine * rotation[1]
+    return float(np.arctan2(-rest[2], rest[1])), about_y, about_z

@@ -1,0 +1,1 @@
+"""Obstacles: spheres, the tree over them, their files and seeded generators."""

@@ -1,0 +1,137 @@
+"""Spheres in files: tables of x, y, z, radius as CSV, and NumPy arrays."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.errors import InvalidInput, unknown_name
+
+COLUMNS = ("x", "y", "z", "radius")
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3}
+"""Metres in each unit that a header may name."""
+_HEADER = re.compile(r"\s*(\w+)\s*(?:\[\s*(\w+)\s*\])?\s*")
+
+
+def read_csv(path: str | Path) -> tuple[Array, Array]:
+    """Centres (N, 3) and radii (N,) [m] of a comma-separated table.
+
+    The first line names the columns x, y, z and radius, in any order, each with its unit if that is
+    not the metre: `x [mm]`. Blank lines and lines that begin with # are passed over.
+
+    Raises:
+        InvalidInput: naming file, line, column and value.
+    """
+    what = f"CSV file '{path}'"
+    _check_path(path)
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidInput(what, type(error).__name__, "a readable UTF-8 file") from None
+    numbered = enumerate(csv.reader(text.splitlines()), start=1)
+    rows = [(line, row) for line, row in numbered if row and not row[0].lstrip().startswith("#")]
+    rows = [(line, row) for line, row in rows if any(cell.strip() for cell in row)]
+    if not rows:
+        raise InvalidInput(what, "no line", f"a header that names {', '.join(COLUMNS)}")
+    places, scales = _header(what, rows[0][1])
+    values = np.empty((len(rows) - 1, len(COLUMNS)))
+    for k, (line, row) in enumerate(rows[1:]):
+        if len(row) != len(rows[0][1]):
+            raise InvalidInput(
+                f"{what}, line {line}", f"{len(row)} values", f"{len(rows[0][1])}, as in the header"
+            )
+        for c, name in enumerate(COLUMNS):
+            given = row[places[c]].strip()
+            values[k, c] = scales[c] * _number(f"{what}, line {line}, column {name}", name, given)
+    return values[:, :3], values[:, 3]
+
+
+def write_csv(path: str | Path, centers: Array, radii: Array) -> None:
+    """Write a table in metres that `read_csv` reads again bit for bit.
+
+    Raises:
+        InvalidInput: a path that cannot be written.
+    """
+    rows = np.column_stack([centers, radii]).tolist()
+    lines = [",".join(f"{name} [m]" for name in COLUMNS)]
+    lines += [",".join(map(repr, row)) for row in rows]
+    try:
+        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise InvalidInput("path", str(path), f"a file to be written ({error})") from None
+
+
+def read_numpy(path: str | Path) -> tuple[Array, Array]:
+    """Centres (N, 3) and radii (N,) [m] of a `.npy` or `.npz` file.
+
+    A `.npy` file holds one array (N, 4) of rows x, y, z, radius; a `.npz` file the arrays `centers`
+    and `radii`. Pickled objects are not read.
+
+    Raises:
+        InvalidInput: naming the file, what it holds and what is allowed.
+    """
+    what = f"NumPy file '{path}'"
+    _check_path(path)
+    suffix = Path(path).suffix
+    if suffix not in (".npy", ".npz"):
+        raise InvalidInput(what, suffix, ".npy or .npz")
+    try:
+        found = np.load(path, allow_pickle=False)
+        arrays = {"": found} if suffix == ".npy" else dict(found)
+    except Exception as error:  # whatever NumPy trips over in a file of any content
+        raise InvalidInput(what, type(error).__name__, f"a file of numbers ({error})") from None
+    kinds = {array.dtype.kind for array in arrays.values()}
+    if not kinds <= set("iuf"):
+        raise InvalidInput(what, f"kinds of numbers {sorted(kinds)}", "real numbers")
+    if suffix == ".npz":
+        for name in ("centers", "radii"):
+            if name not in arrays:
+                raise InvalidInput(what, ", ".join(arrays) or "nothing", "arrays centers and radii")
+        return arrays["centers"], arrays["radii"]
+    table = arrays[""]
+    if table.ndim != 2 or table.shape[1] != len(COLUMNS):
+        raise InvalidInput(what, f"shape {table.shape}", "shape (N, 4): x, y, z, radius")
+    return table[:, :3], table[:, 3]
+
+
+def _check_path(path: object) -> None:
+    if not isinstance(path, (str, Path)):
+        raise InvalidInput("path", path, "a path")
+
+
+def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:
+    """Where each of `COLUMNS` stands, and the metres in its unit."""
+    names, units = [], []
+    for cell in cells:
+        match = _HEADER.fullmatch(cell)
+        name = match.group(1) if match else cell
+        if name not in COLUMNS:
+            raise unknown_name(f"{what}, header", cell, COLUMNS)
+        if name in names:
+            raise InvalidInput(f"{what}, header", name, "each column once")
+        unit = (match.group(2) if match else None) or "m"
+        if unit not in UNITS:
+            raise unknown_name(f"{what}, unit of column {name}", unit, UNITS)
+        names.append(name)
+        units.append(UNITS[unit])
+    for name in COLUMNS:
+        if name not in names:
+            raise InvalidInput(f"{what}, header", ", ".join(names), f"a column {name} as well")
+    places = [names.index(name) for name in COLUMNS]
+    return places, [units[k] for k in places]
+
+
+def _number(what: str, column: str, text: str) -> float:
+    allowed = "a finite number" + (" greater than 0" if column == "radius" else "")
+    try:
+        value = float(text)
+    except ValueError:
+        raise InvalidInput(what, text, allowed) from None
+    if not math.isfinite(value) or (column == "radius" and value <= 0.0):
+        raise InvalidInput(what, text, allowed)
+    return value

@@ -1,0 +1,1 @@
+"""Planners: what they share, the exact optimum, and worker processes."""

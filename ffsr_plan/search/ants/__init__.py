@@ -1,0 +1,1 @@
+"""Ant colonies on lattices whose nodes have one configuration each."""

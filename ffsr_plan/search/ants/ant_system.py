@@ -1,0 +1,172 @@
+"""`AntSystem`: the paper's ant colony, Steps 1 to 5 with Eqs. 10 to 13."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.checks import number, whole_number
+from ffsr_plan.core.errors import PlanningError
+from ffsr_plan.core.kernels import call
+from ffsr_plan.lattice.roadmap import Roadmap
+from ffsr_plan.search.records import Cycle, History, Search, Trails, Watch
+
+_FAINT = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
+
+
+@dataclass(frozen=True)
+class AntSystem:
+    """The paper's planner.
+
+    An ant on node p chooses node q of the next layer with probability proportional to
+    tau_pq^alpha (1/d_pq)^beta over the allowed nodes (Eq. 11). After each cycle
+    tau <- rho tau + sum_k Q / F_k on the edges that ant k used (Eqs. 12 and 13): rho is the share
+    that *persists*. The colony stops when all ants take one path, or after `cycles` cycles; the
+    best path met is the result.
+
+    Attributes:
+        ants: M_h, number of ants.
+        cycles: N_max, most cycles.
+        alpha: weight of pheromone.
+        beta: weight of visibility.
+        rho: persistence of pheromone, in (0, 1).
+        Q: pheromone that an ant lays on its path, in units of F.
+        C: initial pheromone tau(0). The paper does not give it; this default is ours.
+    """
+
+    name: ClassVar[str] = "ant-system"
+
+    ants: int = 30
+    cycles: int = 242
+    alpha: float = 1.0
+    beta: float = 5.0
+    rho: float = 0.526
+    Q: float = 320.0
+    C: float = 10.0
+
+    def __post_init__(self) -> None:
+        checked = {
+            "ants": whole_number("ants", self.ants, at_least=1, at_most=100_000),
+            "cycles": whole_number("cycles", self.cycles, at_least=1),
+            "alpha": number("alpha", self.alpha, at_least=0.0),
+            "beta": number("beta", self.beta, at_least=0.0),
+            "rho": number("rho", self.rho, above=0.0, below=1.0),
+            "Q": number("Q", self.Q, above=0.0),
+            "C": number("C", self.C, above=0.0),
+        }
+        for field, value in checked.items():
+            object.__setattr__(self, field, value)
+
+    def search(
+        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
+    ) -> Search:
+        """Run the colony.
+
+        Raises:
+            NoPath: proven, when every way on from the start has been refused.
+        """
+        watch = watch or Watch()
+        m, n = roadmap.lattice.divisions, roadmap.lattice.size
+        roadmap.prove_obvious()
+        walk = Walk(self, roadmap, rng)
+        tau = np.full((m, n, n), self.C)
+        walked, laid = np.zeros((m, n, n), dtype=np.int64), np.zeros((m, n, n))
+        edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
+        along = np.broadcast_to(np.arange(m + 1), (self.ants, m + 1))
+        records: list[tuple[float, float, float, int]] = []
+        best, best_path = np.inf, np.zeros(m + 1, dtype=np.int64)
+        interrupted = False
+        try:
+            for cycle in range(1, self.cycles + 1):
+                paths = walk.tours(tau)
+                costs = edge_costs[paths[:, :-1], paths[:, 1:]].sum(axis=1)
+                costs += node_costs[along, paths].sum(axis=1)
+                leader = int(np.argmin(costs))
+                if costs[leader] < best:
+                    best, best_path = float(costs[leader]), paths[leader].copy()
+                edges = (along[:, :-1], paths[:, :-1], paths[:, 1:])
+                deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
+                tau *= self.rho
+                np.add.at(tau, edges, deposit)
+                np.maximum(tau, _FAINT, out=tau)
+                np.add.at(laid, edges, deposit)
+                np.add.at(walked, edges, 1)
+                distinct = len(np.unique(paths, axis=0))
+                records.append((best, float(costs[leader]), float(np.mean(costs)), distinct))
+                if watch.on_cycle is not None:
+                    counts = np.zeros((m + 1, n), dtype=np.int64)
+                    np.add.at(counts, (along, paths), 1)
+                    watch.on_cycle(Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau))
+                interrupted = watch.over() and distinct > 1 and cycle < self.cycles
+                if distinct == 1 or interrupted:
+                    break
+        except KeyboardInterrupt:
+            interrupted = True
+            if not records:
+                raise PlanningError("interrupted before the first cycle was done") from None
+        trails = _trails(walked, laid, tau)
+        return Search(frozen(best_path), _history(records), trails, interrupted)
+
+
+class Walk:
+    """Ants walking from start to goal by Eq. 11.
+
+    Edges are certified when an ant first chooses them. One that is refused is closed and the ant
+    draws again, which gives exactly the roulette wheel over the allowed edges. Nodes from which the
+    goal is known to be out of reach are not allowed.
+    """
+
+    def __init__(self, settings: AntSystem, roadmap: Roadmap, rng: np.random.Generator) -> None:
+        from ffsr_plan.search.ants.open_edges import open_ways
+
+        m, n = roadmap.lattice.divisions, roadmap.lattice.size
+        self._roadmap, self._rng, self._alpha = roadmap, rng, settings.alpha
+        steps = np.maximum(roadmap.lattice.steps, 1e-12)  # a step of no length at all stays visible
+        self._log_visibility = -settings.beta * np.log(steps)
+        self._ways, self._exits = open_ways(roadmap.admissible, roadmap.status)
+        self._wheels = np.empty((m, n, n))
+        self._changed = np.ones((m, n), dtype=bool)
+        self._paths = np.full((settings.ants, m + 1), roadmap.lattice.origin, dtype=np.int64)
+
+    def tours(self, tau: Array) -> IntArray:
+        """(ants, m + 1) free paths drawn by Eq. 11; valid until the next call.
+
+        Raises:
+            NoPath: the start has become a dead end.
+        """
+        from ffsr_plan.search.ants.ant_system_kernels import walk
+        from ffsr_plan.search.ants.open_edges import close_refused
+
+        roadmap, paths = self._roadmap, self._paths
+        self._changed[:] = True
+        ant, layer = 0, -1
+        while True:
+            ant, layer = call(
+                walk, self._rng, tau, self._alpha, self._log_visibility, self._ways, self._exits,
+                roadmap.status, self._wheels, self._changed, paths, ant, layer,
+            )  # fmt: skip
+            if ant == len(paths):
+                return paths
+            if ant < 0:
+                raise roadmap.no_path() or PlanningError("the ants are lost")
+            if not roadmap.free(layer, int(paths[ant, layer]), int(paths[ant, layer + 1])):
+                close_refused(layer, roadmap.status, self._ways, self._exits, self._changed)
+
+
+def _history(records: list[tuple[float, float, float, int]]) -> History:
+    best, iteration_best, mean, distinct = zip(*records, strict=True)
+    return History(
+        frozen(np.array(best)),
+        frozen(np.array(iteration_best)),
+        frozen(np.array(mean)),
+        frozen(np.array(distinct, dtype=np.int64)),
+    )
+
+
+def _trails(walked: IntArray, laid: Array, tau: Array) -> Trails:
+    used = np.nonzero(walked)
+    layer, tail, head = used
+    return Trails(layer, tail, head, walked[used], laid[used], tau[used])

@@ -1,0 +1,130 @@
+"""Local search on a path of the lattice, compiled.
+
+The neighbourhood of a path are all paths that are displaced from it, on every layer independently,
+by one of a few steps: to the nodes next to it, and some farther along an axis. It holds every shift
+of every segment by such a step, and a small shortest-path problem finds its best member.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray
+
+_ENOUGH = 1e-12  # relative improvement below which a better path does not count
+
+
+def neighbourhood(indices: IntArray, wide: bool) -> IntArray:
+    """(n, w) nodes within one displacement of each node, itself first, -1 where there is none.
+
+    Args:
+        indices: (n, axes) offset indices of the nodes of a layer.
+        wide: along an axis, all steps up to half its width; else the powers of two among them.
+    """
+    axes = indices.shape[1]
+    if axes == 0:
+        return np.zeros((1, 1), dtype=np.int64)
+    lowest = indices.min(axis=0)
+    shape = tuple(int(e) for e in indices.max(axis=0) - lowest + 1)
+    table = np.full(shape, -1, dtype=np.int64)
+    table[tuple((indices - lowest).T)] = np.arange(len(indices))
+    next_to = np.stack(np.meshgrid(*[[0, -1, 1]] * axes, indexing="ij"), -1).reshape(-1, axes)
+    unit = np.eye(axes, dtype=np.int64)
+    far = [
+        sign * size * unit[axis]
+        for axis in range(axes)
+        for size in range(2, shape[axis] // 2 + 1)
+        if wide or size.bit_count() == 1
+        for sign in (1, -1)
+    ]
+    columns = []
+    for step in [*next_to, *far]:
+        target = indices - lowest + step
+        inside = np.all((target >= 0) & (target < shape), axis=1)
+        column = np.full(len(indices), -1, dtype=np.int64)
+        column[inside] = table[tuple(target[inside].T)]
+        columns.append(column)
+    return np.stack(columns, axis=1)
+
+
+@njit(cache=True, nogil=True)
+def path_cost(path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags) -> float:
+    """F of a path, infinite if one of its edges is closed."""
+    total = 0.0
+    for i in range(len(path) - 1):
+        if not ways[i, path[i], path[i + 1]]:
+            return np.inf
+        total += edge_costs[path[i], path[i + 1]] + node_costs[i + 1, path[i + 1]]
+    return total
+
+
+@njit(cache=True, nogil=True)
+def _best_neighbour(
+    path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags, table: IntArray
+) -> float:
+    """Replace a path by the best one in its neighbourhood; return its cost."""
+    m, width = len(path) - 1, table.shape[1]
+    costs, nodes = np.empty((m + 1, width)), np.empty((m + 1, width), dtype=np.int64)
+    before = np.zeros((m + 1, width), dtype=np.int64)
+    costs[0, 0], nodes[0, 0], count = 0.0, path[0], 1
+    for i in range(m):
+        reached = 0
+        for b in range(width if i < m - 1 else 1):
+            head = table[path[i + 1], b]
+            if head < 0 or node_costs[i + 1, head] == np.inf:
+                continue
+            least, choice = np.inf, 0
+            for a in range(count):
+                total = costs[i, a] + edge_costs[nodes[i, a], head]
+                if total < least and ways[i, nodes[i, a], head]:
+                    least, choice = total, a
+            if least < np.inf:
+                costs[i + 1, reached] = least + node_costs[i + 1, head]
+                nodes[i + 1, reached], before[i + 1, reached] = head, choice
+                reached += 1
+        count = reached
+    if count == 0:
+        return np.inf
+    a = 0
+    for i in range(m, 0, -1):
+        path[i] = nodes[i, a]
+        a = before[i, a]
+    return float(costs[m, 0])
+
+
+@njit(cache=True, nogil=True)
+def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags) -> float:
+    """Put the node of each layer in turn to the best place between its neighbours; the gain."""
+    m, n = len(path) - 1, len(edge_costs)
+    gain = 0.0
+    for i in range(1, m):
+        tail, now, head = path[i - 1], path[i], path[i + 1]
+        here = edge_costs[tail, now] + node_costs[i, now] + edge_costs[now, head]
+        best, choice = here, now
+        for k in range(n):
+            cost = edge_costs[tail, k] + node_costs[i, k] + edge_costs[k, head]
+            if cost < best and ways[i - 1, tail, k] and ways[i, k, head]:
+                best, choice = cost, k
+        path[i] = choice
+        gain += here - best
+    return gain
+
+
+@njit(cache=True, nogil=True)
+def improve(
+    path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags, table: IntArray
+) -> float:
+    """Improve a path in place until its neighbourhood holds no better one; return its cost.
+
+    A path with closed edges is mended if its neighbourhood has a way round; else the cost is
+    infinite.
+    """
+    cost = path_cost(path, edge_costs, node_costs, ways)
+    while True:
+        better = _best_neighbour(path, edge_costs, node_costs, ways, table)
+        if better < np.inf:
+            better -= _best_moves(path, edge_costs, node_costs, ways)
+        if not better < cost * (1.0 - _ENOUGH):
+            return min(better, cost)
+        cost = better

@@ -1,0 +1,218 @@
+"""`MaxMinAntSystem`: the colony that reaches the lattice optimum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
+from ffsr_plan.core.checks import number, truth, whole_number
+from ffsr_plan.core.errors import PlanningError
+from ffsr_plan.core.kernels import call
+from ffsr_plan.lattice.roadmap import Roadmap
+from ffsr_plan.search.records import Cycle, History, Search, Trails, Watch
+
+if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colony runs
+    from ffsr_plan.search.ants.max_min_kernels import State
+
+_LARGE = 100  # nodes a layer from which on pheromone lies on nodes, not on edges
+_TRAILS = 10_000  # edges whose trails are kept for pictures
+_BREATH = 16  # cycles between two looks at the clock
+
+
+@dataclass(frozen=True)
+class MaxMinAntSystem:
+    """A max-min ant system (Stuetzle and Hoos 2000) with local search: the default planner.
+
+    What differs from the paper's colony: ants see what a node costs, not only how far it is
+    (visibility 1 / (d_pq + delta / d_imin)); only one path a cycle lays pheromone, which stays
+    between bounds; some ants of a cycle are improved by local search; the colony starts anew when
+    it no longer gets better. Paths are certified before they count; an edge that is refused is
+    closed. On lattices with additive cost the local search does most of the work, as the
+    documentation shows.
+
+    Attributes:
+        ants: number of ants.
+        cycles: number of cycles.
+        beta: weight of visibility; by default 2, and 5 from 100 nodes a layer on.
+        rho: persistence of pheromone, in (0, 1).
+        improved: how many ants of a cycle local search improves; 0 for none.
+        patience: cycles without improvement before a restart; 0 for no restarts.
+        cost_aware: whether visibility counts delta / d_imin.
+        pheromone: whether ants lay and follow pheromone at all.
+    """
+
+    name: ClassVar[str] = "max-min-ant-system"
+
+    ants: int = 30
+    cycles: int = 242
+    beta: float | None = None
+    rho: float = 0.7
+    improved: int = 1
+    patience: int = 20
+    cost_aware: bool = True
+    pheromone: bool = True
+
+    def __post_init__(self) -> None:
+        checked = {
+            "ants": whole_number("ants", self.ants, at_least=1, at_most=100_000),
+            "cycles": whole_number("cycles", self.cycles, at_least=1),
+            "beta": None
+            if self.beta is None
+            else number("beta", self.beta, at_least=0.0, at_most=40.0),
+            "rho": number("rho", self.rho, above=0.0, below=1.0),
+            "improved": whole_number("improved", self.improved, at_least=0),
+            "patience": whole_number("patience", self.patience, at_least=0),
+            "cost_aware": truth("cost_aware", self.cost_aware),
+            "pheromone": truth("pheromone", self.pheromone),
+        }
+        for field, value in checked.items():
+            object.__setattr__(self, field, value)
+
+    def search(
+        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
+    ) -> Search:
+        """Run the colony.
+
+        Raises:
+            NoPath: proven, when every way on from the start has been refused.
+            PlanningError: no ant found a path, though there is one or that is not known.
+        """
+        from ffsr_plan.search.ants import max_min_kernels as kernel
+        from ffsr_plan.search.ants.open_edges import open_ways
+
+        watch = watch or Watch()
+        roadmap.prove_obvious()
+        ways, exits = open_ways(roadmap.admissible, roadmap.status)
+        state = self._state(roadmap, ways)
+        until, breath = 0, 1 if watch.on_cycle is not None else _BREATH
+        interrupted = False
+        try:
+            while until < self.cycles and not interrupted:
+                until = min(until + breath, self.cycles)
+                self._run_until(until, rng, roadmap, state, exits)
+                if watch.on_cycle is not None:
+                    watch.on_cycle(_report(state, self.cycles))
+                interrupted = watch.over() and until < self.cycles
+        except KeyboardInterrupt:
+            interrupted = True
+        if not np.isfinite(state.values[kernel.BEST]):
+            raise (None if interrupted else roadmap.no_path()) or PlanningError(
+                f"none of {self.ants} ants found a free path in {state.clock[kernel.CYCLE]} "
+                "cycles, which does not mean that there is none: more cycles may find it"
+            )
+        done = state.records[: state.clock[kernel.CYCLE]]
+        history = History(
+            frozen(done[:, 0].copy()),
+            frozen(done[:, 1].copy()),
+            frozen(done[:, 2].copy()),
+            frozen(done[:, 3].astype(np.int64)),
+        )
+        trails = _trails(state)
+        return Search(frozen(state.best_path), history, trails, interrupted)
+
+    def _run_until(
+        self,
+        until: int,
+        rng: np.random.Generator,
+        roadmap: Roadmap,
+        state: State,
+        exits: IntArray,
+    ) -> None:
+        """Run cycles; certify the paths that they come up with; close what is refused."""
+        from ffsr_plan.search.ants import max_min_kernels as kernel
+        from ffsr_plan.search.ants.open_edges import close_refused
+
+        while True:
+            if exits[0, roadmap.lattice.origin] == 0:
+                raise roadmap.no_path() or PlanningError("the ants are lost")
+            outcome = call(kernel.run_cycles, rng, until, state)
+            if outcome == kernel.DONE:
+                return
+            if roadmap.prove_path(state.candidate):
+                continue
+            changed = np.zeros(exits.shape, dtype=bool)
+            for layer in roadmap.refused_layers(state.candidate):
+                close_refused(layer, roadmap.status, state.ways, exits, changed)
+            state.visibility[changed] *= state.ways[changed]
+            state.untouched_wheels[changed] = np.cumsum(state.visibility[changed], axis=1)
+            state.stamps[changed] = -1
+
+    def _state(self, roadmap: Roadmap, ways: Flags) -> State:
+        from ffsr_plan.search.ants.local_search_kernels import neighbourhood
+        from ffsr_plan.search.ants.max_min_kernels import State
+
+        m, n = roadmap.lattice.divisions, roadmap.lattice.size
+        edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
+        visibility = self._visibility(edge_costs, node_costs) * ways
+        chance = 0.05 ** (1.0 / m)
+        least = (1.0 - chance) / (12.0 * chance)
+        patience = self.patience or np.inf
+        rows = 1 if n >= _LARGE else n
+        indices = roadmap.lattice.indices
+        nowhere = np.zeros(m + 1, dtype=np.int64)
+        return State(
+            edge_costs=edge_costs,
+            node_costs=node_costs,
+            ways=ways,
+            status=roadmap.status,
+            visibility=visibility,
+            untouched_wheels=np.cumsum(visibility, axis=2),
+            near=neighbourhood(indices, wide=False),
+            wide=neighbourhood(indices, wide=True),
+            settings=np.array([self.rho, least, self.improved, patience, self.pheromone]),
+            tau=np.ones((m, rows, n)),
+            touched=np.zeros((m, rows), dtype=bool),
+            wheels=np.empty((m, n, n)),
+            stamps=np.full((m, n), -1, dtype=np.int64),
+            paths=np.full((self.ants, m + 1), roadmap.lattice.origin, dtype=np.int64),
+            costs=np.empty(self.ants),
+            searched=np.full(max(64, self.improved), np.inf),
+            searched_wide=np.full(64, np.inf),
+            candidate=nowhere.copy(),
+            best_path=nowhere.copy(),
+            restart_path=nowhere.copy(),
+            clock=np.zeros(3, dtype=np.int64),
+            values=np.array([np.inf, np.inf, np.inf, 1.0]),
+            records=np.zeros((self.cycles, 4)),
+            walked=np.zeros((m, n, n), dtype=np.int64),
+            laid=np.zeros((m, n, n)),
+        )
+
+    def _visibility(self, edge_costs: Array, node_costs: Array) -> Array:
+        """(m, n, n) eta^beta, eta = 1 / (d_pq + delta / d_imin)."""
+        n = len(edge_costs)
+        beta = (2.0 if n < _LARGE else 5.0) if self.beta is None else self.beta
+        seen = np.where(np.isfinite(node_costs[1:]), node_costs[1:], 0.0) * float(self.cost_aware)
+        cost = np.maximum(edge_costs[None] + seen[:, None, :], 1e-12)
+        cost /= cost.min()
+        return np.asarray(1.0 / cost**2 if beta == 2.0 else cost**-beta)
+
+
+def _report(state: State, cycles: int) -> Cycle:
+    from ffsr_plan.search.ants.max_min_kernels import CYCLE, settle
+
+    call(settle, state)
+    number = int(state.clock[CYCLE])
+    best, iteration_best, mean, distinct = map(float, state.records[number - 1])
+    counts = np.zeros(state.node_costs.shape, dtype=np.int64)
+    np.add.at(counts, (np.arange(len(counts)), state.paths), 1)
+    path = state.best_path.copy()
+    return Cycle(number, cycles, best, iteration_best, mean, int(distinct), path, counts, state.tau)
+
+
+def _trails(state: State) -> Trails:
+    """The most walked edges, in the order of layers and nodes."""
+    from ffsr_plan.search.ants.max_min_kernels import settle
+
+    call(settle, state)
+    used = np.flatnonzero(state.walked)
+    if len(used) > _TRAILS:
+        ants = state.walked.ravel()[used]
+        used = np.sort(used[np.argsort(-ants, kind="stable")[:_TRAILS]])
+    edges = np.unravel_index(used, state.walked.shape)
+    layer, tail, head = edges
+    level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]
+    return Trails(layer, tail, head, state.walked[edges], state.laid[edges], level)

@@ -1,0 +1,1 @@
+"""Ant colony and annealing on lattices with posture axes."""

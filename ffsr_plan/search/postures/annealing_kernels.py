@@ -1,0 +1,210 @@
+"""Annealing of a path through base offsets and postures by shifts of whole segments; compiled.
+
+A shift turns all that comes behind its segment about one axis by one angle. So lengths and the
+attitude at the goal are known from the segment alone, and by how much a clearance behind it can
+have changed is bounded by that angle: most shifts are refused before any distance is asked for.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.search.postures.cost_kernels import (
+    COLLISION,
+    Course,
+    Ground,
+    Room,
+    angle_to,
+    compose,
+    missed_cost,
+    node_cost,
+    path_cost,
+    take_edges,
+    visit,
+    working_room,
+)
+
+
+@njit(cache=True, nogil=True)
+def blank_course(path: IntArray) -> Course:
+    """A course along a path (m + 1, 2), nothing worked out."""
+    m = len(path) - 1
+    return Course(
+        path.copy(),
+        np.zeros(m),
+        np.zeros((m + 1, 4)),
+        np.zeros(m + 1),
+        np.zeros(m + 1),
+        np.zeros(m + 1),
+    )
+
+
+@njit(cache=True, nogil=True)
+def least_cost(numbers: Array, clearance: float, change: float, inner: bool) -> float:
+    """The least that a node may cost [m] whose clearance changes by `change` at most."""
+    cost = node_cost(numbers, clearance + change, inner)
+    return cost if clearance + change <= 0.0 else min(COLLISION, cost)
+
+
+@njit(cache=True, nogil=True)
+def trial_cost(
+    ground: Ground,
+    course: Course,
+    trial: Course,
+    first: int,
+    last: int,
+    weight: float,
+    limit: float,
+    room: Room,
+) -> float:
+    """Cost [m] of a path that differs from another one on the layers first .. last - 1.
+
+    Args:
+        ground: the lattice.
+        course: the path as it is.
+        trial: the new one, of which only the nodes are given; worked out from `first` on, but for
+            lengths that do not change.
+        first: the first layer that differs.
+        last: the first layer behind these.
+        weight: of a radian by which the goal attitude is missed [m].
+        limit: a cost above it is infinite [m].
+        room: to work in.
+    """
+    m = len(course.nodes) - 1
+    trial.quats[first - 1] = course.quats[first - 1]
+    if not take_edges(ground, trial, first - 1, last):
+        return np.inf
+    old, new, numbers = course.quats, trial.quats, ground.numbers
+    spin = angle_to(old[last], new[last])
+    if spin > 0.0:  # what comes behind is turned in the world by one rotation
+        back, turn = np.empty(4), np.empty(4)
+        back[:3], back[3] = -old[last, :3], old[last, 3]
+        compose(new[last], back, turn)
+        for i in range(last, m + 1):
+            compose(turn, old[i], new[i])
+    else:
+        new[last:] = old[last:]
+    total = missed_cost(numbers, new[m], ground.goal, weight)
+    for i in range(m):
+        total += trial.lengths[i] if first - 1 <= i < last else course.lengths[i]
+    for i in range(1, first):
+        total += course.costs[i]
+    trial.least[first:last] = 0.0
+    for i in range(last, m + 1):
+        change = spin * ground.reach[i, course.nodes[i, 1]]
+        trial.least[i] = least_cost(numbers, course.clearances[i], change, i < m)
+        total += trial.least[i]
+    if total > limit:
+        return np.inf
+    if spin > 0.0:
+        return visit(ground, trial, first, m + 1, total, limit, room)
+    trial.clearances[last:], trial.costs[last:] = course.clearances[last:], course.costs[last:]
+    return visit(ground, trial, first, last, total, limit, room)
+
+
+@njit(cache=True, nogil=True)
+def adopt(course: Course, trial: Course, first: int, last: int) -> None:
+    """Make the trial the course."""
+    course.nodes[first:last] = trial.nodes[first:last]
+    course.lengths[first - 1 : last] = trial.lengths[first - 1 : last]
+    course.quats[first:] = trial.quats[first:]
+    course.clearances[first:] = trial.clearances[first:]
+    course.costs[first:] = trial.costs[first:]
+
+
+@njit(cache=True, nogil=True)
+def shift(
+    successors: IntArray,
+    neighbours: IntArray,
+    axes: int,
+    nodes: IntArray,
+    moved: IntArray,
+    first: int,
+    last: int,
+    kind: int,
+) -> bool:
+    """Shift the nodes on the layers first .. last - 1 of a path; whether that is possible.
+
+    Kinds are: back and forth along each posture axis, to either side along each axis of the base,
+    a layer later and a layer earlier.
+    """
+    beside = neighbours.shape[1]
+    if kind < 2 * axes:
+        step = (3**axes - 1) // 2 + (3 ** (kind // 2) if kind % 2 else -(3 ** (kind // 2)))
+        for i in range(first, last):
+            moved[i, 1] = successors[nodes[i, 1], step]
+            if moved[i, 1] < 0:
+                return False
+    elif kind < 2 * axes + beside:
+        for i in range(first, last):
+            moved[i, 0] = neighbours[nodes[i, 0], kind - 2 * axes]
+            if moved[i, 0] < 0:
+                return False
+    else:  # room for a step here is taken from there
+        when = -1 if kind == 2 * axes + beside else 1
+        for i in range(first, last):
+            moved[i] = nodes[i + when]
+    return True
+
+
+@njit(cache=True, nogil=True)
+def anneal(
+    ground: Ground,
+    rng: np.random.Generator,
+    path: IntArray,
+    iterations: int,
+    hot: float,
+    cold: float,
+    weights: Array,
+    best_path: IntArray,
+) -> float:
+    """Shift whole segments of a path by one, along an axis or in time, as the temperature falls.
+
+    Args:
+        ground: the lattice.
+        rng: source of randomness.
+        path: (m + 1, 2) base offset and posture on each layer.
+        iterations: shifts to try.
+        hot: temperature at the beginning [m].
+        cold: at the end [m].
+        weights: (2,) of a radian by which the goal attitude is missed [m]: at the beginning, and
+            from half of the iterations on, by which the best path is judged.
+        best_path: (m + 1, 2) the best path, filled in.
+
+    Returns:
+        The cost of the best path [m].
+    """
+    m, room = len(path) - 1, working_room()
+    successors, neighbours, axes = ground.successors, ground.neighbours, ground.indices.shape[1]
+    kinds = 2 * axes + neighbours.shape[1] + 2
+    course, trial = blank_course(path), blank_course(path)
+    best, now, weight = path_cost(ground, course, weights[1]), np.inf, weights[0]
+    best_path[:] = path
+    for n in range(iterations):
+        done = n / iterations
+        if n % 64 == 0:
+            weight = weights[0] * (weights[1] / weights[0]) ** min(1.0, 2.0 * done)
+            now = path_cost(ground, course, weight)  # rounding errors do not add up either
+        heat = hot * (cold / hot) ** done
+        length = int(math.exp(rng.random() * math.log(m)))
+        first = 1 + int(rng.random() * (m - 1))
+        last = min(first + length, m)
+        kind = int(rng.random() * kinds)
+        if not shift(successors, neighbours, axes, course.nodes, trial.nodes, first, last, kind):
+            trial.nodes[first:last] = course.nodes[first:last]
+            continue
+        limit = now - heat * math.log(1.0 - rng.random())
+        cost = trial_cost(ground, course, trial, first, last, weight, limit, room)
+        if cost == np.inf:
+            trial.nodes[first:last] = course.nodes[first:last]
+            continue
+        now = cost
+        adopt(course, trial, first, last)
+        if done >= 0.5 and cost < best:
+            best = cost
+            best_path[:] = course.nodes
+    return best

@@ -1,0 +1,95 @@
+"""The last fraction of a degree: a small bend of the joint path that closes a missed attitude.
+
+The attitude at the end is the product of the turns of all joint steps. Its derivative by every
+inner corner, along every posture axis, comes from differences of the two steps beside the corner;
+of all bends that close the error to first order the least one is taken (Gauss-Newton).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.dynamics.reaction import Reaction
+from ffsr_plan.robots.robot import SpaceRobot
+
+_DIFFERENCE = 1e-5
+_ROUNDS = 6
+_CLOSE = 1e-7  # radians
+
+
+def corrected(
+    robot: SpaceRobot,
+    start: Array,
+    goal: Array,
+    joint_values: Array,
+    directions: Array,
+    held: Flags | None = None,
+) -> Array | None:
+    """Joint values (m + 1, nd) whose reaction ends at the goal attitude; None if none was found.
+
+    Args:
+        robot: the robot; its joint limits are kept.
+        start: (4,) attitude at the beginning (xyzw).
+        goal: (4,) attitude to end with.
+        joint_values: (m + 1, nd) corners of a path that ends near it.
+        directions: (m + 1, axes, nd) along which each corner may be displaced.
+        held: (m + 1,) corners that are to stay where they are; the first and the last do anyway.
+    """
+    path = np.array(joint_values)
+    free = np.ones(directions[1:-1].shape[:2], dtype=np.bool_)
+    if held is not None:
+        free[held[1:-1]] = False
+    for _ in range(_ROUNDS):
+        increments = Reaction(robot, path).increments
+        chain = [start]
+        for increment in increments:
+            chain.append(rotations.multiply(chain[-1], increment))
+        missed = rotations.log(rotations.multiply(rotations.inverse(chain[-1]), goal))
+        if np.linalg.norm(missed) < _CLOSE:
+            return path
+        slope = _slopes(robot, path, directions, increments)
+        inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, missed, free)
+        if inner is None:
+            return None
+        path[1:-1] = inner
+    return None
+
+
+def _within_limits(
+    robot: SpaceRobot, corners: Array, directions: Array, slope: Array, missed: Array, free: Flags
+) -> Array | None:
+    """The corners (m - 1, nd) after the least displacement that keeps every joint's limits.
+
+    A corner that would pass a limit along an axis is held back there, and the others do its share.
+    """
+    free = free.copy()
+    while free.any():
+        change = np.linalg.lstsq(slope * free.ravel(), missed, rcond=None)[0].reshape(free.shape)
+        moves = change[..., None] * directions
+        moved = corners + np.sum(moves, axis=1)
+        above, below = moved > robot.upper, moved < robot.lower
+        if not np.any(above | below):
+            return np.asarray(moved)
+        blocked = (above[:, None] & (moves > 0.0)) | (below[:, None] & (moves < 0.0))
+        free &= ~np.any(blocked, axis=2)
+    return None
+
+
+def _slopes(robot: SpaceRobot, path: Array, directions: Array, increments: Array) -> Array:
+    """(3, (m - 1) axes) rotation at the end, in its own axes, for each unit of displacement."""
+    m, axes = len(path) - 1, directions.shape[1]
+    corners = np.repeat(np.arange(1, m), axes)
+    moved = path[1:-1, None] + _DIFFERENCE * directions[1:-1]
+    moved = moved.reshape(-1, path.shape[1])
+    before = Reaction.of_segments(robot, path[corners - 1], moved - path[corners - 1]).increments
+    behind = Reaction.of_segments(robot, moved, path[corners + 1] - moved).increments
+    rest = [rotations.IDENTITY]  # from corner k + 1 to the end, backwards
+    for increment in increments[:0:-1]:
+        rest.append(rotations.multiply(increment, rest[-1]))
+    after = np.array(rest[::-1])[corners]
+    old = rotations.multiply(increments[corners - 1], increments[corners])
+    turned = rotations.multiply(rotations.inverse(old), rotations.multiply(before, behind))
+    turned = rotations.multiply(rotations.inverse(after), rotations.multiply(turned, after))
+    return np.asarray(rotations.log(turned).T / _DIFFERENCE)

@@ -1,0 +1,68 @@
+"""A lower bound on F over a lattice with posture axes, where no exact optimum can be had.
+
+The base origin lies inside the robot at any attitude, if it lies in one of the root link's shapes:
+then the clearance of a node is at most the distance of its base origin from the obstacles, and a
+shortest path over base offsets alone with these distances costs no more than any path of the
+lattice. Where a goal attitude is to be reached, no path is shorter than the joint steps that turn
+the base by that much, each at the best rate of all steps.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.kernels import call
+from ffsr_plan.core.rotations import IDENTITY, angle_between
+from ffsr_plan.problem.objective import nearness
+from ffsr_plan.search.postures.posture_lattice import PostureLattice
+
+
+def lower_bound(lattice: PostureLattice) -> float:
+    """F that no path of the lattice falls below, in units of length."""
+    from ffsr_plan.lattice.shortest_path_kernel import extend
+
+    problem, base = lattice.problem, lattice.base
+    m, count = problem.lattice.divisions, len(base.offsets)
+    nodes = np.zeros((m + 1, count))
+    if _origin_inside(lattice) and len(problem.scene) and not base.nominal.floats:
+        places = base.nominal.positions[:, None] + base.offsets
+        scene = problem.scene
+        apart = np.full(places.shape[:2], np.inf)
+        for center, radius in zip(scene.centers, scene.radii, strict=True):
+            apart = np.minimum(apart, np.linalg.norm(places - center, axis=2) - radius)
+        nodes = nearness(problem, apart)
+        nodes[[0, -1]] = 0.0
+    costs, before = np.full((m + 1, count), np.inf), np.zeros((m + 1, count), dtype=np.int64)
+    costs[0, base.origin] = 0.0
+    status = np.zeros((m, count, count), dtype=np.int8)
+    edges = base.steps[None] / problem.length_unit
+    call(extend, 0, edges, nodes, status, costs, before)
+    return max(float(costs[m, base.origin]), _turning_bound(lattice) / problem.length_unit)
+
+
+def _origin_inside(lattice: PostureLattice) -> bool:
+    """Whether the base origin lies inside a shape of the root link."""
+    shapes = lattice.problem.robot.primitives
+    for k in np.flatnonzero((shapes.links == 0) & shapes.exact):
+        local = np.abs(shapes.rotations[k].T @ -shapes.positions[k])
+        size = shapes.sizes[k]
+        if shapes.kinds[k] == 1 and np.all(local <= size):
+            return True
+        beyond = np.array([local[0], local[1], max(local[2] - size[1], 0.0)])
+        if shapes.kinds[k] == 0 and np.linalg.norm(beyond) <= size[0]:
+            return True
+    return False
+
+
+def _turning_bound(lattice: PostureLattice) -> float:
+    """Least length [m] of joint steps that can turn the base by what is demanded, less 1 degree."""
+    problem = lattice.problem
+    if not problem.reach_attitude:
+        return 0.0
+    there = lattice.successors >= 0
+    angles: Array = angle_between(IDENTITY, lattice.turns[:, there])
+    lengths = np.sqrt(problem.delta_d**2 + lattice.bends[:, there])
+    rates = np.max(np.where(lengths > 0.0, angles / np.maximum(lengths, 1e-12), 0.0), initial=0.0)
+    wanted = float(angle_between(problem.start[3:7], problem.goal[3:7])) - np.radians(1.0)
+    return max(0.0, wanted / rates) if rates > 0.0 else 0.0

@@ -1,0 +1,188 @@
+"""The lattice where axes displace the joints: nodes are base offsets times postures.
+
+A node is (layer i, base offset b, posture p). Joints at (i, p) are the nominal ones of the layer
+plus what the posture axes displace them by. From one layer to the next, a posture changes by at
+most one step along each axis; base offsets change as they like.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from ffsr_plan.collision.distances import SelfQuery
+from ffsr_plan.collision.shape_placements import shape_placements
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
+from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.kernels import said_after
+from ffsr_plan.core.rotations import IDENTITY
+from ffsr_plan.dynamics.momentum import centers_of_mass
+from ffsr_plan.dynamics.reaction import Reaction
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.problem.lattice_settings import PostureAxis
+from ffsr_plan.problem.problem import Problem
+
+MOST_STEPS = 2_000_000  # joint edges; some hundred bytes each
+
+
+class PostureLattice:
+    """All nodes of a lattice with posture axes.
+
+    Attributes:
+        problem: what the lattice was built from.
+        base: base offsets and the nominal motion, as on a lattice without posture axes.
+        indices: (n, axes) index of each posture along each axis, 0 = not displaced.
+        origin: the posture without displacement.
+        joint_values: (m + 1, n, nd) [rad or m].
+        successors: (n, k) the postures within one step, -1 where there is none.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        """Build the lattice.
+
+        Raises:
+            InvalidInput: an unknown joint or posture, or more steps than memory allows.
+        """
+        self.problem = problem
+        self.base = LayeredLattice(problem)
+        axes = problem.lattice.postures
+        grids = np.meshgrid(*(np.array(a.indices) for a in axes), indexing="ij")
+        self.indices: IntArray = frozen(np.stack([g.ravel() for g in grids], axis=1))
+        self.origin = int(np.flatnonzero(~self.indices.any(axis=1))[0])
+        count = problem.lattice.divisions * len(self.indices) * 3 ** len(axes)
+        if count > MOST_STEPS:
+            raise InvalidInput(
+                "lattice postures",
+                f"{len(self.indices)} postures a layer, {count} joint steps",
+                f"at most {MOST_STEPS:.0e} of divisions x postures x 3^axes",
+            )
+        nominal = self.base.nominal.joint_values
+        values = np.repeat(nominal[:, None], len(self.indices), axis=1)
+        directions = displacements(problem, nominal)
+        for k, (axis, index) in enumerate(zip(axes, self.indices.T, strict=True)):
+            values += directions[:, None, k] * _share(axis, index)
+        self.joint_values: Array = frozen(values)
+        self.successors: IntArray = frozen(self._neighbours())
+
+    @property
+    def size(self) -> int:
+        """n, the number of postures."""
+        return len(self.indices)
+
+    @cached_property
+    def alike(self) -> bool:
+        """Whether the postures of all layers are the same, so that one layer speaks for all."""
+        return bool(np.allclose(self.joint_values, self.joint_values[:1], rtol=0.0, atol=1e-12))
+
+    @cached_property
+    def allowed(self) -> Flags:
+        """(m + 1, n) postures within the joints' limits whose links keep clear of each other."""
+        robot, layers = self.problem.robot, 1 if self.alike else len(self.joint_values)
+        values = self.joint_values[:layers]
+        inside = np.all((values >= robot.lower) & (values <= robot.upper), axis=2)
+        query, apart = SelfQuery(robot), inside.copy()
+        if not query.empty:
+            for i, p in zip(*np.nonzero(inside), strict=True):
+                q = robot.assemble(np.zeros(3), IDENTITY, values[i, p])
+                apart[i, p] = query.distance(q) > 0.0
+        return np.broadcast_to(apart, self.joint_values.shape[:2])
+
+    @cached_property
+    def turns(self) -> Array:
+        """(m, n, k, 4) rotation of the base over each joint step (xyzw), in its own axes."""
+        layers = 1 if self.alike else len(self.joint_values) - 1
+        m, n, k = len(self.joint_values) - 1, *self.successors.shape
+        nominal = self.base.nominal
+        still = IDENTITY if nominal.reacts else rotations.exp(nominal.turn)
+        found = np.tile(still, (layers, n, k, 1))
+        there = np.tile(self.successors >= 0, (layers, 1, 1))
+        if nominal.reacts and self.problem.robot.nd:
+            if self.alike:  # the way back, at k - 1 - step, undoes what the way there does
+                there &= np.arange(k) > k // 2
+            i, p, step = np.nonzero(there)
+            begin, on = self.joint_values[i, p], self.successors[p, step]
+            steps = self.joint_values[i + 1, on] - begin
+            words = f"the base's reaction to {len(steps)} joint steps, before the search"
+            with said_after(5.0, words):
+                turned = Reaction.of_segments(self.problem.robot, begin, steps).increments
+            found[i, p, step] = turned
+            if self.alike:
+                found[i, on, k - 1 - step] = rotations.inverse(turned)
+        return np.broadcast_to(found, (m, n, k, 4))
+
+    @cached_property
+    def bends(self) -> Array:
+        """(m, n, k) squared length of each joint step beyond the nominal one, in Eq. 6 [m^2]."""
+        problem = self.problem
+        slides = problem.robot.prismatic
+        weights = np.where(slides, problem.position_weight, problem.rotation_weight)
+        displaced = self.joint_values - self.base.nominal.joint_values[:, None]
+        steps = displaced[1:, np.maximum(self.successors, 0)] - displaced[:-1, :, None]
+        return np.asarray(np.sum((steps * weights) ** 2, axis=3))
+
+    @cached_property
+    def frames(self) -> Array:
+        """(m + 1, n, g, 15) collision shapes relative to the base, as of `Placements.frames`."""
+        layers = 1 if self.alike else len(self.joint_values)
+        values = self.joint_values[:layers].reshape(-1, self.problem.robot.nd)
+        q = self.problem.robot.assemble(np.zeros(3), IDENTITY, values)
+        frames = shape_placements(self.problem.robot, q).frames
+        frames = frames.reshape(layers, self.size, *frames.shape[1:])
+        return np.broadcast_to(frames, (len(self.joint_values), *frames.shape[1:]))
+
+    @cached_property
+    def centers(self) -> Array:
+        """(m + 1, n, 3) centre of mass from the base origin [m]; zero where thrusters act."""
+        if not self.base.nominal.floats:
+            return np.zeros((*self.joint_values.shape[:2], 3))
+        values = self.joint_values.reshape(-1, self.problem.robot.nd)
+        found = centers_of_mass(self.problem.robot, values)
+        return np.asarray(found.reshape(*self.joint_values.shape[:2], 3), dtype=np.float64)
+
+    def _neighbours(self) -> IntArray:
+        axes = self.problem.lattice.postures
+        number = {tuple(index): p for p, index in enumerate(self.indices.tolist())}
+        steps = list(product((-1, 0, 1), repeat=len(axes)))
+        return np.array(
+            [
+                [number.get(tuple(a + b for a, b in zip(index, s, strict=True)), -1) for s in steps]
+                for index in self.indices.tolist()
+            ],
+            dtype=np.int64,
+        )
+
+
+def displacements(problem: Problem, nominal: Array) -> Array:
+    """(m + 1, axes, nd) what each posture axis displaces the joints along, on each layer.
+
+    Args:
+        problem: gives the axes.
+        nominal: (m + 1, nd) joint values without displacement.
+    """
+    axes = problem.lattice.postures
+    found: Array = np.stack([_displacement(problem, axis, nominal) for axis in axes], axis=1)
+    return found
+
+
+def _share(axis: PostureAxis, index: IntArray) -> Array:
+    """(n, 1) how far along the axis: in units of its direction, or of the way to its posture."""
+    share = index / axis.levels if axis.posture else index * axis.spacing
+    return np.asarray(share, dtype=np.float64)[:, None]
+
+
+def _displacement(problem: Problem, axis: PostureAxis, nominal: Array) -> Array:
+    """(m + 1, nd) direction of the axis, or the way from the nominal joints to its posture."""
+    robot = problem.robot
+    if axis.posture and axis.posture not in robot.postures:
+        raise unknown_name("lattice postures, towards", axis.posture, robot.postures)
+    named = robot.postures[axis.posture] if axis.posture else dict(axis.joints)
+    result = np.zeros_like(nominal)
+    for name, value in named.items():
+        if name not in robot.joint_names:
+            raise unknown_name("lattice postures, joints", name, robot.joint_names)
+        k = robot.joint_names.index(name)
+        result[:, k] = value - nominal[:, k] if axis.posture else value
+    return result

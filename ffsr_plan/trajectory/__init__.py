@@ -1,0 +1,1 @@
+"""Trajectories: time laws along a proven motion, and their tables."""

@@ -1,0 +1,208 @@
+"""A second reading of a robot's URDF, for verification alone.
+
+It shares nothing with the planner: yourdfpy parses, and the kinematics here and the distances in
+`solids` and `separation` are plain numpy over many configurations at once. Slow, simple,
+independent. Collision shapes are read here, because yourdfpy refuses capsules.
+
+Where another solid stands for a cylinder or mesh, that solid is measured: the plan's clearances are
+defined by it. `Bodies.uncovered` tells whether it holds the original, so that what is free for the
+one is free for the other.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.verification.solids import Shape, ball, box, capsule, covers_cylinder, covers_points
+
+if TYPE_CHECKING:
+    from ffsr_plan.robots.collision_shapes import Replacement
+
+
+class Bodies:
+    """Links, joints, masses and shapes of a URDF.
+
+    Args:
+        urdf: the text.
+        srdf: the SRDF text, empty for none.
+        replacements: the solids that stand for cylinders and meshes.
+    """
+
+    def __init__(self, urdf: str, srdf: str = "", replacements: Sequence[Replacement] = ()) -> None:
+        import yourdfpy
+
+        root = ElementTree.fromstring(urdf)
+        self._collisions = [
+            (str(link.get("name")), number, collision)
+            for link in root.findall("link")
+            for number, collision in enumerate(link.findall("collision"))
+        ]
+        for link in root.findall("link"):
+            for shape in [*link.findall("collision"), *link.findall("visual")]:
+                link.remove(shape)
+        robot = yourdfpy.URDF.load(
+            io.BytesIO(ElementTree.tostring(root)), build_scene_graph=False, load_meshes=False
+        ).robot
+        self._exempt = {
+            frozenset((pair.get("link1"), pair.get("link2")))
+            for pair in ElementTree.fromstring(srdf or "<robot/>").iter("disable_collisions")
+        }
+        self._children: dict[str, list[Any]] = {link.name: [] for link in robot.links}
+        for joint in robot.joints:
+            self._children[joint.parent].append(joint)
+        heads = {joint.child for joint in robot.joints}
+        self.root = next(link.name for link in robot.links if link.name not in heads)
+        self.inertials = {link.name: link.inertial for link in robot.links if link.inertial}
+        instead = {(r.link, r.number): r for r in replacements}
+        self.shapes = [
+            _shape(link, collision, instead.get((link, number)))
+            for link, number, collision in self._collisions
+        ]
+
+    def uncovered(self, meshes: Mapping[str, Array]) -> list[str]:
+        """Links with a cylinder or mesh that sticks out of the solid that stands for it.
+
+        Args:
+            meshes: (n, 3) corners of the meshes' hulls by address, before the URDF's scale.
+        """
+        found = []
+        for shape, (link, _, collision) in zip(self.shapes, self._collisions, strict=True):
+            element = collision.find("geometry")[0]  # type: ignore[index]
+            if element.tag == "cylinder":
+                held = covers_cylinder(shape, *_floats(element, "radius", "length"))
+            elif element.tag == "mesh":
+                scale = np.array(element.get("scale", "1 1 1").split(), dtype=np.float64)
+                held = covers_points(shape, meshes[str(element.get("filename"))] * scale)
+            else:
+                continue
+            if not held:
+                found.append(link)
+        return found
+
+    def pairs(self) -> list[tuple[Shape, Shape]]:
+        """Shapes that must not touch.
+
+        Not of one rigid body, nor of links between which lie just one moving joint and links
+        without a shape, nor of links that the SRDF exempts.
+        """
+        beside: dict[str, list[tuple[str, int]]] = {name: [] for name in self._children}
+        for parent, joints in self._children.items():
+            for joint in joints:
+                moves = int(joint.type != "fixed")
+                beside[parent].append((joint.child, moves))
+                beside[joint.child].append((parent, moves))
+        shaped = {shape.link for shape in self.shapes}
+        return [
+            (a, b)
+            for a, b in combinations(self.shapes, 2)
+            if frozenset((a.link, b.link)) not in self._exempt
+            and b.link not in _may_touch(a.link, beside, shaped)
+        ]
+
+    def link_poses(self, base: Array, joints: dict[str, Array]) -> dict[str, Array]:
+        """(N, 4, 4) pose of every link in the world.
+
+        Args:
+            base: (N, 4, 4) pose of the root link.
+            joints: (N,) values of each moving joint by name.
+        """
+        poses = {self.root: base}
+        waiting = [self.root]
+        while waiting:
+            parent = waiting.pop()
+            for joint in self._children[parent]:
+                origin = np.eye(4) if joint.origin is None else joint.origin
+                pose = poses[parent] @ origin
+                if joint.type != "fixed":
+                    pose = pose @ _displacement(joint, joints[joint.name])
+                poses[joint.child] = pose
+                waiting.append(joint.child)
+        return poses
+
+
+def pose(position: Array, quat_xyzw: Array) -> Array:
+    """(N, 4, 4) from (N, 3) and (N, 4): columns are the rotated unit vectors."""
+    vector, scalar = quat_xyzw[:, :3], quat_xyzw[:, 3]
+    result = np.zeros((len(position), 4, 4))
+    for k, unit in enumerate(np.eye(3)):
+        turned = np.cross(vector, unit)
+        result[:, :3, k] = unit + 2.0 * (scalar[:, None] * turned + np.cross(vector, turned))
+    result[:, :3, 3] = position
+    result[:, 3, 3] = 1.0
+    return result
+
+
+def _displacement(joint: Any, value: Array) -> Array:  # noqa: ANN401 - yourdfpy has no types
+    result = np.broadcast_to(np.eye(4), (len(value), 4, 4)).copy()
+    axis = np.array([1.0, 0.0, 0.0]) if joint.axis is None else np.asarray(joint.axis, float)
+    axis = axis / np.linalg.norm(axis)
+    if joint.type == "prismatic":
+        result[:, :3, 3] = value[:, None] * axis
+        return result
+    x, y, z = axis
+    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    sine, cosine = np.sin(value)[:, None, None], np.cos(value)[:, None, None]
+    result[:, :3, :3] = np.eye(3) + sine * skew + (1.0 - cosine) * (skew @ skew)  # Rodrigues
+    return result
+
+
+def _shape(link: str, collision: ElementTree.Element, instead: Replacement | None) -> Shape:
+    placement = _placement(collision.find("origin"))
+    element = collision.find("geometry")[0]  # type: ignore[index]
+    if element.tag == "box":
+        size = np.array(str(element.get("size")).split(), dtype=np.float64)
+        return box(link, placement, 0.5 * size)
+    if element.tag == "sphere":
+        return ball(link, placement, *_floats(element, "radius"))
+    if element.tag == "capsule":
+        return capsule(link, placement, *_floats(element, "radius", "length"))
+    if instead is None:
+        raise ValueError(f"nothing on record stands for the {element.tag} of link '{link}'")
+    points = (np.array(instead.points) - placement[:3, 3]) @ placement[:3, :3]
+    return Shape(link, placement, points, instead.radius)
+
+
+def _floats(element: ElementTree.Element, *keys: str) -> list[float]:
+    return [float(str(element.get(key))) for key in keys]
+
+
+def _placement(origin: ElementTree.Element | None) -> Array:
+    """(4, 4) of an `<origin>`: turns about the fixed x, y and z axes, then the shift."""
+    result = np.eye(4)
+    if origin is None:
+        return result
+    for axis, angle in enumerate(origin.get("rpy", "0 0 0").split()):
+        cosine, sine = np.cos(float(angle)), np.sin(float(angle))
+        turn, (i, j) = np.eye(4), ((1, 2), (2, 0), (0, 1))[axis]
+        turn[i, i] = turn[j, j] = cosine
+        turn[j, i], turn[i, j] = sine, -sine
+        result = turn @ result
+    result[:3, 3] = np.array(origin.get("xyz", "0 0 0").split(), dtype=np.float64)
+    return result
+
+
+def _may_touch(link: str, beside: dict[str, list[tuple[str, int]]], shaped: set[str]) -> set[str]:
+    """Links that may touch `link`, itself among them.
+
+    A walk over joints, of which at most one moves, and none on a way past another shape.
+    """
+    found: set[str] = set()
+    waiting, seen = [(link, 0, False)], set()
+    while waiting:
+        here, moved, passed = state = waiting.pop()
+        if state in seen:
+            continue
+        seen.add(state)
+        found.add(here)
+        passed |= here in shaped and here != link
+        for other, moves in beside[here]:
+            if moved + moves <= (0 if passed else 1):
+                waiting.append((other, moved + moves, passed))
+    return found

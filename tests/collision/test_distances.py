@@ -1,0 +1,97 @@
+"""Clearance by Coal against closed forms and against the laws of distance."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ffsr_plan as fp
+from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
+from ffsr_plan.robots.robot import robot_from_urdf
+from tests.helpers.builders import (
+    box,
+    inertial,
+    link,
+    random_configuration,
+    random_robot,
+    random_scene,
+    urdf,
+)
+from tests.helpers.closed_forms import clearance as closed_form
+
+seeds = st.integers(0, 10_000)
+
+
+@given(seeds)
+def test_clearance_equals_the_closed_form_for_spheres_and_boxes(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    scene = random_scene(rng, low=-2, high=2)
+    q = random_configuration(robot, rng)
+    assert fp.clearance(robot, scene, q) == pytest.approx(closed_form(robot, scene, q), abs=1e-12)
+
+
+@given(seeds)
+def test_moving_an_obstacle_changes_the_clearance_by_no_more(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    scene = random_scene(rng, count=1, low=-2, high=2)
+    q = random_configuration(robot, rng)
+    shift = rng.normal(size=3) * rng.uniform(0, 0.5)
+    moved = fp.Scene(scene.centers + shift, scene.radii)
+    change = fp.clearance(robot, moved, q) - fp.clearance(robot, scene, q)
+    assert abs(change) <= np.linalg.norm(shift) + 1e-9
+
+
+@given(seeds)
+def test_clearance_is_the_least_over_obstacles(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    scene = random_scene(rng, low=-2, high=2)
+    q = random_configuration(robot, rng)
+    each = [
+        fp.clearance(robot, fp.Scene([c], [r]), q)
+        for c, r in zip(scene.centers, scene.radii, strict=True)
+    ]
+    assert fp.clearance(robot, scene, q) == min(each)
+    near = ObstacleQuery(robot, scene).nearest(q)
+    assert near.other == int(np.argmin(each))
+
+
+@given(seeds)
+def test_clearance_does_not_see_where_the_world_is(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    scene = random_scene(rng, low=-2, high=2)
+    q = random_configuration(robot, rng)
+    shift = rng.normal(size=3)
+    elsewhere = np.array(q)
+    elsewhere[:3] += shift
+    moved = fp.Scene(scene.centers + shift, scene.radii)
+    assert fp.clearance(robot, moved, elsewhere) == pytest.approx(
+        fp.clearance(robot, scene, q), abs=1e-9
+    )
+
+
+def test_touching_is_zero_and_penetration_is_negative():
+    robot = robot_from_urdf(
+        urdf(link("base", inertial(1.0, (1.0, 1.0, 1.0)), box((2.0, 2.0, 2.0)))), "cube"
+    )
+    q = robot.neutral()
+    assert fp.clearance(robot, fp.Scene([[1.5, 0, 0]], [0.5]), q) == pytest.approx(0, abs=1e-12)
+    assert fp.clearance(robot, fp.Scene([[1.2, 0, 0]], [0.5]), q) == pytest.approx(-0.3)
+
+
+def test_an_empty_scene_is_infinitely_far(robot):
+    assert fp.clearance(robot, fp.Scene([], []), robot.neutral()) == np.inf
+
+
+def test_self_distance_depends_on_the_joints_alone(robot):
+    query = SelfQuery(robot)
+    joints = {"left_1": -0.8, "right_1": 0.9, "left_2": 0.3}
+    a = robot.configuration(joints=joints)
+    b = robot.configuration((3, -2, 1), (0.4, 0.5, 0.6), joints)
+    assert query.distance(a) == pytest.approx(query.distance(b), abs=1e-12)
+
+
+def test_the_nearest_link_is_named(robot):
+    q = robot.neutral()  # arms stretched to the sides
+    near = ObstacleQuery(robot, fp.Scene([[0.12, 1.6, 0.0]], [0.2])).nearest(q)
+    assert near.link == "left_link_3"
+    assert near.other == 0

@@ -1,0 +1,94 @@
+"""Robots: Table 1, configurations and their inverse, self-collision pairs."""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import ffsr_plan as fp
+from ffsr_plan.core.bundled_files import folder
+from tests.helpers.builders import random_configuration, random_robot
+from tools import make_planar_dual_arm
+
+
+def test_table_1_the_urdf_and_the_model_agree(robot):
+    model = robot.model
+    table = {"root_joint": make_planar_dual_arm.BASE} | {
+        f"{side}_{k}": body
+        for side in ("left", "right")
+        for k, body in enumerate(make_planar_dual_arm.ARM, 1)
+    }
+    assert set(model.names[1:]) == set(table)
+    for name, body in table.items():
+        inertia = model.inertias[model.getJointId(name)]
+        assert inertia.mass == body.mass
+        assert inertia.inertia[2, 2] == pytest.approx(body.inertia, rel=1e-12)
+    for side in ("left", "right"):
+        for k in (2, 3):
+            offset = model.jointPlacements[model.getJointId(f"{side}_{k}")].translation
+            assert np.allclose(offset, [make_planar_dual_arm.ARM[k - 2].length, 0, 0], atol=1e-12)
+    axes = {model.joints[j].shortname() for j in range(2, model.njoints)}
+    assert axes == {"JointModelRZ"}
+
+
+def test_the_right_first_link_has_its_left_twins_inertia_not_the_misprint():
+    first = make_planar_dual_arm.ARM[0]
+    assert first.inertia == pytest.approx(first.mass * first.length**2 / 12, abs=5e-6)
+
+
+def test_the_bundled_urdf_is_what_the_table_builds(tmp_path):
+    make_planar_dual_arm.write_planar_dual_arm(tmp_path / "made.urdf")
+    bundled = folder("urdf") / "planar_dual_arm.urdf"
+    assert (tmp_path / "made.urdf").read_text() == bundled.read_text()
+
+
+def test_a_model_without_free_flyer_would_lose_the_base_so_the_mass_is_checked(robot):
+    total = make_planar_dual_arm.BASE.mass + 2 * sum(body.mass for body in make_planar_dual_arm.ARM)
+    assert sum(i.mass for i in robot.model.inertias) == pytest.approx(total)
+
+
+@given(st.integers(0, 200))
+def test_components_invert_configuration(seed):
+    robot = random_robot(seed)
+    q = random_configuration(robot, np.random.default_rng(seed))
+    parts = robot.components(q)
+    again = robot.configuration(parts.position, parts.attitude, parts.joints)
+    assert np.allclose(again, q, atol=1e-12) or np.allclose(again[3:7], -q[3:7], atol=1e-12)
+    assert np.allclose(robot.from_paper_vector(robot.paper_vector(q)), again, atol=1e-12)
+
+
+def test_joints_are_given_by_name_and_the_others_stay_at_zero(robot):
+    q = robot.configuration(joints={"right_2": -0.3})
+    assert robot.components(q).joints == dict.fromkeys(robot.joint_names, 0.0) | {"right_2": -0.3}
+
+
+def test_adjacent_links_are_no_self_collision_pairs(robot):
+    shapes = robot.collision_model.geometryObjects
+    pairs = {
+        frozenset(robot.link_of(shapes[k]) for k in (p.first, p.second))
+        for p in robot.collision_model.collisionPairs
+    }
+    assert frozenset({"base", "left_link_1"}) not in pairs
+    assert frozenset({"left_link_1", "left_link_2"}) not in pairs
+    assert frozenset({"base", "left_link_2"}) in pairs
+    assert frozenset({"left_link_3", "right_link_3"}) in pairs
+    assert len(pairs) == 7 * 6 // 2 - 6
+
+
+def test_a_robot_survives_pickling(robot):
+    twin = pickle.loads(pickle.dumps(robot))
+    assert twin.joint_names == robot.joint_names
+    assert twin.model == robot.model
+
+
+def test_robots_load_by_name_and_by_path(robot):
+    path = folder("urdf") / "planar_dual_arm.urdf"
+    assert fp.load_robot(path).model == robot.model == fp.load_robot(str(path)).model
+    assert fp.robot_names() == ["planar_dual_arm", "point", "satellite_ur5", "spatial_dual_arm"]
+
+
+def test_every_bundled_urdf_is_listed():
+    assert {p.stem for p in Path(folder("urdf")).glob("*.urdf")} == set(fp.robot_names())

@@ -1,0 +1,96 @@
+"""Obstacles from CSV and NumPy files: what was written is read, mistakes are named."""
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+from tests.helpers.builders import random_scene
+
+
+def written(tmp_path, text, name="debris.csv"):
+    path = tmp_path / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_table_comes_back_bit_for_bit(tmp_path):
+    scene = random_scene(np.random.default_rng(0), 200)
+    scene.to_csv(tmp_path / "scene.csv")
+    again = fp.Scene.from_csv(tmp_path / "scene.csv")
+    assert np.array_equal(again.centers, scene.centers)
+    assert np.array_equal(again.radii, scene.radii)
+
+
+def test_columns_stand_in_any_order_and_in_units_of_their_own(tmp_path):
+    text = "# tracked on Monday\nradius [cm], z,x [mm] , y [km]\n\n50,3,1000,0.002\n 1e1,-3,0,0\n"
+    scene = fp.Scene.from_csv(written(tmp_path, text))
+    assert scene.centers == pytest.approx(np.array([[1.0, 2.0, 3.0], [0.0, 0.0, -3.0]]))
+    assert scene.radii == pytest.approx([0.5, 0.1])
+
+
+def test_a_header_alone_is_an_empty_scene(tmp_path):
+    assert len(fp.Scene.from_csv(written(tmp_path, "x,y,z,radius\n"))) == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", r"debris\.csv'.*a header that names x, y, z, radius"),
+        ("1,2,3,4\n", r"header: got '1'; allowed: x, y, z, radius"),
+        ("x,y,z,radios\n", r"header: got 'radios'.*did you mean 'radius'"),
+        ("x,y,z\n", r"header: got 'x, y, z'; allowed: a column radius as well"),
+        ("x,y,z,z\n", r"header: got 'z'; allowed: each column once"),
+        ("x [inch],y,z,radius\n", r"unit of column x: got 'inch'; allowed: m, cm"),
+        ("x,y,z,radius\n\n1,2,3,0.1\n1,zwei,3,4\n", r"line 4, column y: got 'zwei'; .*finite"),
+        ("x,y,z,radius\n1,2,3,-0.1\n", r"line 2, column radius: got '-0.1'; .*greater than 0"),
+        ("x,y,z,radius\n1,nan,3,0.1\n", r"line 2, column y: got 'nan'"),
+        ("x,y,z,radius\n1,,3,0.1\n", r"line 2, column y: got ''"),
+        ("x,y,z,radius\n1,2,3\n", r"line 2: got '3 values'; allowed: 4, as in the header"),
+    ],
+)
+def test_a_mistake_in_a_table_names_file_line_column_and_value(tmp_path, text, message):
+    with pytest.raises(fp.InvalidInput, match=message):
+        fp.Scene.from_csv(written(tmp_path, text))
+
+
+def test_a_table_that_is_not_there_or_cannot_be_written_is_named(tmp_path):
+    with pytest.raises(fp.InvalidInput, match=r"nowhere\.csv.*FileNotFoundError"):
+        fp.Scene.from_csv(tmp_path / "nowhere.csv")
+    with pytest.raises(fp.InvalidInput, match="a file to be written"):
+        fp.Scene().to_csv(tmp_path / "no" / "folder.csv")
+
+
+def test_numpy_files_hold_the_same_spheres(tmp_path):
+    scene = random_scene(np.random.default_rng(1), 20)
+    np.save(tmp_path / "scene.npy", np.column_stack([scene.centers, scene.radii]))
+    np.savez(tmp_path / "scene.npz", centers=scene.centers, radii=scene.radii)
+    for name in ("scene.npy", "scene.npz"):
+        again = fp.Scene.from_numpy(tmp_path / name)
+        assert np.array_equal(again.centers, scene.centers)
+        assert np.array_equal(again.radii, scene.radii)
+
+
+def test_a_mistake_in_a_numpy_file_is_named(tmp_path):
+    np.save(tmp_path / "three.npy", np.zeros((5, 3)))
+    np.save(tmp_path / "objects.npy", np.array([{}]), allow_pickle=True)
+    np.savez(tmp_path / "half.npz", centers=np.zeros((5, 3)))
+    np.save(tmp_path / "flat.npy", np.zeros((5, 4)))
+    for name, message in {
+        "three.npy": r"three\.npy': got 'shape \(5, 3\)'; allowed: shape \(N, 4\)",
+        "objects.npy": r"objects\.npy': got 'ValueError'",
+        "half.npz": r"half\.npz': got 'centers'; allowed: arrays centers and radii",
+        "nowhere.npy": r"nowhere\.npy': got 'FileNotFoundError'",
+        "scene.txt": r"got '\.txt'; allowed: \.npy or \.npz",
+        "flat.npy": r"scene radii\[0\]: got 0\.0",
+    }.items():
+        with pytest.raises(fp.InvalidInput, match=message):
+            fp.Scene.from_numpy(tmp_path / name)
+
+
+def test_a_sum_of_scenes_holds_the_spheres_of_both_in_order():
+    first, second = (random_scene(np.random.default_rng(k), 3) for k in range(2))
+    both = first + second + fp.Scene()
+    assert np.array_equal(both.centers, np.vstack([first.centers, second.centers]))
+    assert np.array_equal(both.radii, np.hstack([first.radii, second.radii]))
+    with pytest.raises(TypeError):
+        first + 1

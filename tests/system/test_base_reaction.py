@@ -1,0 +1,61 @@
+"""Why reaction belongs inside the planner: what is free with the attitude held, collides in flight.
+
+Distances are the scalar and vector closed forms of `closed_forms`, not Coal's.
+"""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+from ffsr_plan.dynamics.motion import Motion
+from tests.helpers.closed_forms import clearances
+
+SAMPLES = 101
+
+
+@pytest.fixture(scope="module", params=[1001, 1008])
+def problem(request):
+    """A random scene as in `benchmarks/random_scenes.py`; the shortest path hugs its obstacles."""
+    ends = fp.load_scenario("fig2a")
+    rng = np.random.default_rng(request.param)
+    count = int(rng.integers(4, 12))
+    x, y = rng.uniform(1.8, 8.2, count), rng.uniform(-3.0, 3.0, count)
+    scene = fp.Scene(np.stack([x, y, np.zeros(count)], axis=1), rng.uniform(0.15, 0.5, count))
+    lattice = fp.Lattice(40, fp.Axis(20, 0.15))
+    return fp.Problem(ends.robot, scene, ends.start, ends.goal, lattice=lattice)
+
+
+def least_clearance(motion, scene):
+    times = np.linspace(0.0, 1.0, SAMPLES)
+    q = motion.at(np.repeat(np.arange(motion.edges), SAMPLES), np.tile(times, motion.edges))
+    return clearances(motion.robot, scene, q).min()
+
+
+def certified(motion, scene):
+    """Edge by edge, each from the attitude that the one before arrives at."""
+    corners = motion.configurations()
+    return [
+        fp.certify_edge(motion.robot, scene, begin, end, mode=motion.mode).free
+        for begin, end in pairwise(corners)
+    ]
+
+
+def test_a_plan_with_the_attitude_held_collides_when_the_base_reacts(problem):
+    held = fp.plan(replace(problem, mode="attitude-held"), fp.LatticeOptimum())
+    assert held.verify(samples=SAMPLES).ok
+    assert least_clearance(held.motion, problem.scene) > 0.0
+    path = held.configurations[:, :3]
+    flight = Motion(problem.robot, "free-flying", problem.start, problem.goal, path)
+    np.testing.assert_array_equal(flight.joint_values, held.motion.joint_values)
+    assert least_clearance(flight, problem.scene) < -0.1
+    assert not all(certified(flight, problem.scene))
+
+
+def test_a_plan_with_reaction_does_not_collide_when_the_base_reacts(problem):
+    plan = fp.plan(problem, fp.LatticeOptimum())
+    assert plan.verify(samples=SAMPLES).ok
+    assert least_clearance(plan.motion, problem.scene) > 0.0
+    assert all(certified(plan.motion, problem.scene))
