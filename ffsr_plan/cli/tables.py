@@ -44,7 +44,7 @@ def plan_table(title: str, found: Plan, report: Report | None, duration: float) 
     if found.arrival_attitude_error is not None:
         missed = np.degrees(found.arrival_attitude_error)
         table.add_row("goal attitude", f"missed by {missed:.2g}°, brought about by the arms")
-    if found.problem.mode == "attitude-held":
+    if found.problem.mode.has_wheels:
         wheels = found.wheel_momentum(duration)
         table.add_row(
             f"wheels, if it takes {duration:g} s",
@@ -101,7 +101,7 @@ def flight_rows(flown: TimedPlan) -> Iterator[tuple[str, str]]:
         yield "corner cut by them", f"at most {flown.corner_cut:.3g} m"
     yield "delta-v of the translation", f"{flown.delta_v:.4g} m/s"
     yield "peak thrust", f"{np.max(np.linalg.norm(found.thrust, axis=1)):.3g} N"
-    if flown.motion.mode == "attitude-held":
+    if flown.motion.mode.has_wheels:
         for name, values, unit in (
             ("torque", found.wheel_torque, "N m"),
             ("momentum", found.wheel_momentum, "N m s"),

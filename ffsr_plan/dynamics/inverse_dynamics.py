@@ -79,11 +79,11 @@ def states(motion: Motion, edge: IntArray, time: Array, pace: Array, acceleratio
     robot, q = motion.robot, motion.at(edge, time)
     joints = motion.joints_at(edge, time)
     step = np.hstack([np.zeros((len(q), 6)), np.diff(motion.joint_values, axis=0)[edge]])
-    if not motion.reacts:
+    if not motion.mode.attitude_reacts:
         step[:, 3:6] = motion.turn
     v, a = step * pace[:, None], step * acceleration[:, None]
     to_base = np.swapaxes(rotations.matrix(q[:, 3:7]), 1, 2)
-    if not motion.floats:
+    if not motion.mode.floats:
         way = motion.base_steps()[edge]
         v[:, :3] = turned(to_base, way * pace[:, None])
         a[:, :3] = turned(to_base, way * acceleration[:, None])
@@ -92,17 +92,21 @@ def states(motion: Motion, edge: IntArray, time: Array, pace: Array, acceleratio
     efforts = np.empty_like(v)
     stored = np.zeros((len(q), 3))
     for k in range(len(q)):
-        if motion.reacts:
-            _react(model, data, q[k], v[k], a[k], slice(0 if motion.floats else 3, 6))
+        if motion.mode.attitude_reacts:
+            _react(model, data, q[k], v[k], a[k], slice(0 if motion.mode.floats else 3, 6))
         else:
             stored[k] = -to_base[k] @ pin.computeCentroidalMomentum(model, data, q[k], v[k]).angular
-        if not motion.floats:
+        if not motion.mode.floats:
             a[k, :3] -= np.cross(v[k, 3:6], v[k, :3])  # base axes turn with the base
         efforts[k] = pin.rnea(model, data, q[k], v[k], a[k])
     force, moment, torques = efforts[:, :3], efforts[:, 3:6], efforts[:, 6:]
     none = np.zeros((len(q), 3))
-    thrust = none if motion.floats else rotations.rotate(q[:, 3:7], force)
-    wheels = none if motion.reacts else moment - cross(centers_of_mass(robot, joints), force)
+    thrust = none if motion.mode.floats else rotations.rotate(q[:, 3:7], force)
+    wheels = (
+        none
+        if motion.mode.attitude_reacts
+        else moment - cross(centers_of_mass(robot, joints), force)
+    )
     parameters = (edge + time) / motion.edges
     return States(parameters, joints, q, v, a, thrust, wheels, stored, torques)
 

@@ -16,11 +16,10 @@ import numpy as np
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import SpaceRobot
-
-MODES = ("free-flying", "attitude-held", "free-floating")
 
 
 class Motion:
@@ -28,7 +27,7 @@ class Motion:
 
     Attributes:
         robot: the robot.
-        mode: one of `MODES`.
+        mode: what actuates the base.
         positions: (m + 1, 3) base origin at the corners, world [m].
         joint_values: (m + 1, nd) at the corners [rad or m].
         attitudes: (m + 1, 4) base attitude at the corners (xyzw), reaction included.
@@ -37,7 +36,7 @@ class Motion:
     def __init__(
         self,
         robot: SpaceRobot,
-        mode: str,
+        mode: Mode | str,
         start: Array,
         goal: Array,
         positions: Array,
@@ -50,14 +49,14 @@ class Motion:
 
         Args:
             robot: the robot.
-            mode: one of `MODES`.
+            mode: what actuates the base.
             start: (nq,).
             goal: (nq,).
             positions: (m + 1, 3) base origin at the corners, world [m].
             joint_values: (m + 1, nd) at the corners; without them the joints move steadily from
                 start to goal, continuous ones the shorter way round.
         """
-        self.robot, self.mode = robot, mode
+        self.robot, self.mode = robot, Mode(mode)
         self._start, self._goal = start[3:7], goal[3:7]
         self._origin = start[:3]
         self._progress = np.arange(len(positions)) / (len(positions) - 1)
@@ -68,7 +67,7 @@ class Motion:
         self.joint_values = frozen(np.array(joint_values, dtype=np.float64))
         self.positions = frozen(np.array(positions, dtype=np.float64))
         self.attitudes = frozen(self._attitudes(self._progress))
-        if self.floats:
+        if self.mode.floats:
             self.positions = frozen(self._afloat(self.attitudes, self.joint_values))
 
     @property
@@ -76,20 +75,10 @@ class Motion:
         """m, their number."""
         return len(self.positions) - 1
 
-    @property
-    def reacts(self) -> bool:
-        """Whether the attitude follows from the arms' motion."""
-        return self.mode != "attitude-held"
-
-    @property
-    def floats(self) -> bool:
-        """Whether the base's position follows from the arms' motion too."""
-        return self.mode == "free-floating"
-
     def base_steps(self) -> Array:
         """(m, 3) what thrusters move the base origin by over each edge, world axes [m]."""
         steps: Array = np.diff(self.positions, axis=0)
-        return np.zeros_like(steps) if self.floats else steps
+        return np.zeros_like(steps) if self.mode.floats else steps
 
     @cached_property
     def reaction(self) -> Reaction:
@@ -124,7 +113,7 @@ class Motion:
         t = time[:, None]
         joints = self.joints_at(edge, time)
         quat = self._attitudes((edge + time) / self.edges)
-        if self.floats:
+        if self.mode.floats:
             position = self._afloat(quat, joints)
         else:
             position = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
@@ -145,7 +134,7 @@ class Motion:
 
     def _attitudes(self, progress: Array) -> Array:
         """(N, 4) at path parameters (N,) from 0 to 1; translation turns nothing."""
-        if not self.reacts:
+        if not self.mode.attitude_reacts:
             return rotations.slerp(self._start, self._goal, progress)
         if self._straight:
             turned = self.reaction.rotation(np.zeros(len(progress), dtype=np.int64), progress)

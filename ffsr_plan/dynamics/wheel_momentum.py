@@ -55,7 +55,7 @@ def wheel_momentum(
     motion: Motion, duration: float, times: ArrayLike | None = None
 ) -> WheelMomentum:
     """See `Plan.wheel_momentum`."""
-    if motion.mode != "attitude-held":
+    if motion.mode.attitude_reacts:
         raise InvalidInput(
             "wheel_momentum: mode", motion.mode, "'attitude-held'; otherwise there are no wheels"
         )

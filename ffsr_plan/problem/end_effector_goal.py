@@ -25,11 +25,12 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, one_of, whole_number
+from ffsr_plan.core.checks import FARTHEST, finite_array, whole_number
 from ffsr_plan.core.errors import GoalInCollision, InvalidInput, PoseOutOfReach, unknown_name
 from ffsr_plan.core.rotations import from_angles, inverse, log, matrix, multiply
+from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.momentum import connection, generalized_jacobian
-from ffsr_plan.dynamics.motion import MODES, Motion
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
@@ -50,7 +51,7 @@ class _Target(NamedTuple):
     frame: int
     position: Array
     rotation: Array | None
-    mode: str
+    mode: Mode
     start: Array
     base_position: Array
     base_quat: Array
@@ -63,7 +64,7 @@ def inverse_kinematics(
     attitude: ArrayLike | None = None,
     *,
     start: ArrayLike,
-    mode: str = "free-flying",
+    mode: Mode | str = Mode.FREE_FLYING,
     base_position: ArrayLike | None = None,
     base_attitude: ArrayLike | None = None,
     scene: Scene | None = None,
@@ -83,7 +84,7 @@ def inverse_kinematics(
         attitude: (3,) wanted for the frame, ZYX angles (alpha, beta, gamma) [rad]; None if any
             will do.
         start: (nq,) configuration that the motion begins with.
-        mode: one of `MODES`; see `Problem`.
+        mode: what actuates the base; see `Problem`.
         base_position: (3,) where thrusters take the base origin, world [m]; None to stay at the
             start's. Not to be given in the mode `free-floating`.
         base_attitude: (3,) where wheels turn the base, ZYX angles [rad]; None to keep the start's.
@@ -101,7 +102,8 @@ def inverse_kinematics(
         GoalInCollision: the pose was met, but always in collision; with the first one found.
     """
     target = _checked(
-        robot, frame, position, attitude, start, mode, base_position, base_attitude
+        robot, frame, position, attitude, start, Mode.parse("mode", mode),
+        base_position, base_attitude,
     )  # fmt: skip
     rng = np.random.default_rng(whole_number("seed", seed, at_least=0))
     begin = robot.joint_values(target.start)
@@ -138,7 +140,7 @@ def inverse_kinematics(
 
 def _checked(
     robot: SpaceRobot, frame: str, position: ArrayLike, attitude: ArrayLike | None,
-    start: ArrayLike, mode: str, base_position: ArrayLike | None, base_attitude: ArrayLike | None,
+    start: ArrayLike, mode: Mode, base_position: ArrayLike | None, base_attitude: ArrayLike | None,
 ) -> _Target:  # fmt: skip
     if not isinstance(robot, SpaceRobot):
         raise InvalidInput("robot", robot, "a SpaceRobot")
@@ -146,14 +148,13 @@ def _checked(
         raise InvalidInput("robot", robot.name, "a robot with joints")
     if not isinstance(frame, str) or not robot.model.existFrame(frame):
         raise unknown_name("frame", frame, [f.name for f in robot.model.frames])
-    one_of("mode", mode, MODES)
-    if base_position is not None and mode == "free-floating":
+    if base_position is not None and mode.floats:
         raise InvalidInput(
             "base_position",
             base_position,
             "None in the mode free-floating: it follows from the arms",
         )
-    if base_attitude is not None and mode != "attitude-held":
+    if base_attitude is not None and mode.attitude_reacts:
         raise InvalidInput(
             "base_attitude", base_attitude, f"None in the mode {mode}: it follows from the arms"
         )
@@ -259,15 +260,15 @@ def _jacobian(target: _Target, begin: Array, change: Array) -> Array:
     """(3, nd) or (6, nd) slope of `_missed` by the joint values at the end of the path."""
     robot, q = target.robot, _end(target, begin + change)
     model, data, pose = robot.model, robot.model.createData(), _pose(target, q)
-    if target.mode == "free-floating":
+    if target.mode.floats:
         slope = generalized_jacobian(robot, q, model.frames[target.frame].name)
     else:
         whole = pin.computeFrameJacobian(model, data, q, target.frame, pin.LOCAL_WORLD_ALIGNED)
         slope = np.array(whole[:, 6:])
-        if target.mode == "free-flying":
+        if target.mode is Mode.FREE_FLYING:
             slope += whole[:, 3:6] @ connection(robot, q)
-    if target.mode != "attitude-held":
-        floats = target.mode == "free-floating"
+    if target.mode.attitude_reacts:
+        floats = target.mode.floats
         lever = pose.translation - (pin.centerOfMass(model, data, q) if floats else q[:3])
         beyond = _turn_by_way(robot, begin, change) - connection(robot, q)
         turn = matrix(q[3:7]) @ beyond

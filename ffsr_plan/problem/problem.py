@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import number, one_of, truth
+from ffsr_plan.core.checks import number, truth
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.rotations import angle_between, to_angles
-from ffsr_plan.dynamics.motion import MODES
+from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.robot import SpaceRobot
@@ -51,7 +51,7 @@ class Problem:
     scene: Scene
     start: Array
     goal: Array
-    mode: str = "free-flying"
+    mode: Mode = Mode.FREE_FLYING
     lattice: Lattice = field(default_factory=Lattice)
     delta: float = 0.0
     length_unit: float = 1.0
@@ -67,7 +67,7 @@ class Problem:
         scene: Scene,
         start: ArrayLike,
         goal: ArrayLike,
-        mode: str = "free-flying",
+        mode: Mode | str = Mode.FREE_FLYING,
         lattice: Lattice | None = None,
         delta: float = 0.0,
         length_unit: float = 1.0,
@@ -95,7 +95,7 @@ class Problem:
             "scene": scene,
             "start": robot.check_configuration("start", start),
             "goal": robot.check_configuration("goal", goal),
-            "mode": one_of("mode", mode, MODES),
+            "mode": Mode.parse("mode", mode),
             "lattice": lattice or Lattice(),
             "delta": number("delta", delta, at_least=0.0),
             "length_unit": number("length_unit", length_unit, above=0.0),
@@ -130,12 +130,12 @@ class Problem:
             PoseOutOfReach: with what the best joint values found miss the pose by.
             GoalInCollision: all joint values found touch an obstacle or the robot itself.
         """
-        held = self.mode == "attitude-held"
+        held = self.mode.has_wheels
         goal = inverse_kinematics(
             self.robot, frame, position, attitude,
             start=self.start,
             mode=self.mode,
-            base_position=None if self.mode == "free-floating" else self.goal[:3],
+            base_position=None if self.mode.floats else self.goal[:3],
             base_attitude=to_angles(self.goal[3:7]) if held else None,
             scene=self.scene,
             seed=seed,
@@ -145,7 +145,7 @@ class Problem:
     @property
     def travel(self) -> Array:
         """(3,) from the base's start to its goal, world axes [m]; zero where it floats."""
-        if self.mode == "free-floating":
+        if self.mode.floats:
             return frozen(np.zeros(3))
         return frozen(self.goal[:3] - self.start[:3])
 
@@ -157,7 +157,7 @@ class Problem:
     @property
     def turn(self) -> float:
         """Angle from the start's to the goal's attitude [rad], where the mode prescribes both."""
-        if self.mode != "attitude-held":
+        if self.mode.attitude_reacts:
             return 0.0
         return float(angle_between(self.start[3:7], self.goal[3:7]))
 
@@ -174,7 +174,7 @@ class Problem:
     def _check_that_something_is_to_be_done(self) -> None:
         moves = float(np.linalg.norm(self.travel)) > _SAME
         turns = float(np.max(np.abs(self.joint_travel), initial=0.0)) > _SAME or self.turn > _SAME
-        if self.reach_attitude and self.mode == "attitude-held":
+        if self.reach_attitude and self.mode.has_wheels:
             raise InvalidInput("reach_attitude", True, "False where wheels turn the base")
         if self.reach_attitude and not self.lattice.postures:
             raise InvalidInput("reach_attitude", True, "a lattice with posture axes")
@@ -182,7 +182,7 @@ class Problem:
             raise InvalidInput(
                 "goal", self.goal.tolist(), "a configuration that differs from the start"
             )
-        floats = self.mode == "free-floating"
+        floats = self.mode.floats
         if not moves and self.lattice.axes:
             raise InvalidInput(
                 "lattice",

@@ -70,9 +70,11 @@ class EdgeTravel:
             rates = np.diff(motion.joint_values, axis=0)
             joints = motion.joint_values[:-1] + time * rates
             lengths = np.full(m, end - begin)
-            if motion.reacts:
+            if motion.mode.attitude_reacts:
                 error = _ERRORS * motion.reaction.error * len(motion.reaction.increments)
-                travels = self._bound.reacting(joints, rates, quats, lengths, error, motion.floats)
+                travels = self._bound.reacting(
+                    joints, rates, quats, lengths, error, motion.mode.floats
+                )
             else:
                 turn = np.tile(motion.turn, (m, 1))
                 travels = self._bound.held(joints, rates, quats, lengths, turn)

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import number, one_of
+from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.dynamics.motion import MODES, Motion
+from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
@@ -43,7 +44,7 @@ def certify_edge(
     scene: Scene,
     begin: ArrayLike,
     end: ArrayLike,
-    mode: str = "free-flying",
+    mode: Mode | str = Mode.FREE_FLYING,
     tolerance: float = 1e-4,
 ) -> EdgeProof:
     """Prove that the motion from `begin` to `end` touches nothing, base reaction included.
@@ -73,7 +74,7 @@ def certify_edge(
         raise InvalidInput("scene", scene, "a Scene")
     first, last = robot.check_configuration("begin", begin), robot.check_configuration("end", end)
     positions = np.stack([first[:3], last[:3]])
-    motion = Motion(robot, one_of("mode", mode, MODES), first, last, positions)
+    motion = Motion(robot, Mode.parse("mode", mode), first, last, positions)
     prover = Prover(motion, scene, number("tolerance", tolerance, at_least=1e-7))
     still = np.zeros(3)
     ends = prover.clearances(np.array([0, 1]), np.zeros((2, 3)))

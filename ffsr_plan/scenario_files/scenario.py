@@ -15,7 +15,7 @@ from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, one_of, whole_number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
-from ffsr_plan.dynamics.motion import MODES
+from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.planning.planner import PLANNERS
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
@@ -98,9 +98,9 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         meshes=file.robot.meshes,
         cylinders=file.robot.cylinders,
     )
-    mode = one_of("robot.mode", file.robot.mode, MODES)
+    mode = Mode.parse("robot.mode", file.robot.mode)
     posed = file.goal.end_effector is not None
-    reach = file.goal.attitude is not None and mode != "attitude-held"
+    reach = file.goal.attitude is not None and mode.attitude_reacts
     if reach and not file.lattice.postures:
         raise InvalidInput(
             "goal.attitude",
@@ -108,7 +108,7 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
             f"no goal attitude in the mode {mode}, where it follows from the arms, on a lattice "
             "without posture axes; leave it out, or use mode = 'attitude-held'",
         )
-    if file.goal.position is not None and mode == "free-floating":
+    if file.goal.position is not None and mode.floats:
         raise InvalidInput(
             "goal.position",
             file.goal.position,
@@ -116,7 +116,7 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
         )
     with _in_table("start"):
         start = robot.configuration(**file.start.model_dump())
-    base = start[:3] if posed and mode == "free-floating" else _place(file.goal)
+    base = start[:3] if posed and mode.floats else _place(file.goal)
     scene = _scene(file, folder, [start[:3], base])
     with _in_table("goal"):
         goal = _goal(file.goal, robot, scene, start, mode)
@@ -137,7 +137,7 @@ def _build(file: ScenarioFile, folder: Path) -> Scenario:
             normal=axes.get("normal"),
             postures=[_posture_axis(k, table) for k, table in enumerate(file.lattice.postures)],
         ),
-        reach_attitude=reach or bool(posed and file.lattice.postures and mode != "attitude-held"),
+        reach_attitude=reach or bool(posed and file.lattice.postures and mode.attitude_reacts),
         **file.objective.model_dump(),
     )
     wanted = file.planner
@@ -156,25 +156,25 @@ def _place(table: GoalTable) -> Array:
     return finite_array("goal: position", table.position or (0.0, 0.0, 0.0), (3,), FARTHEST)
 
 
-def _goal(table: GoalTable, robot: SpaceRobot, scene: Scene, start: Array, mode: str) -> Array:
+def _goal(table: GoalTable, robot: SpaceRobot, scene: Scene, start: Array, mode: Mode) -> Array:
     """The goal configuration (nq,), by inverse kinematics where a pose is given."""
     wanted = table.end_effector
     if wanted is None:
         return robot.configuration(_place(table), table.attitude or (0.0, 0.0, 0.0), table.joints)
     if table.joints:
         raise InvalidInput("joints", table.joints, "none beside end_effector: they follow from it")
-    if table.attitude is not None and mode != "attitude-held":
+    if table.attitude is not None and mode.attitude_reacts:
         raise InvalidInput(
             "attitude", table.attitude, f"none beside end_effector in the mode {mode}"
         )
-    floats = mode == "free-floating"
+    floats = mode.floats
     with _in_table("end_effector"):
         return inverse_kinematics(
             robot, wanted.frame, wanted.position, wanted.attitude,
             start=start,
             mode=mode,
             base_position=None if floats else _place(table),
-            base_attitude=(table.attitude or (0.0, 0.0, 0.0)) if mode == "attitude-held" else None,
+            base_attitude=(table.attitude or (0.0, 0.0, 0.0)) if mode.has_wheels else None,
             scene=scene,
             seed=wanted.seed,
         )  # fmt: skip

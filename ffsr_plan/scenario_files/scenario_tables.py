@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
-from ffsr_plan.dynamics.motion import MODES
+from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.planning.planner import PLANNERS
 from ffsr_plan.robots.collision_shapes import CONTAINERS
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
@@ -44,7 +44,7 @@ class RobotTable(Table):
 
     urdf: str
     """Name of a bundled robot, or a path relative to the scenario file."""
-    mode: Annotated[str, _one_of(MODES)] = MODES[0]
+    mode: Annotated[str, _one_of([mode.value for mode in Mode])] = "free-flying"
     """What moves the base."""
     package_dirs: list[str] = []
     srdf: str | None = None

@@ -67,7 +67,7 @@ class StraightRuns(NamedTuple):
 
 def straight_runs(motion: Motion) -> StraightRuns:
     """The straight runs of a motion, as long as they can be."""
-    turn = np.zeros(3) if motion.reacts else motion.turn
+    turn = np.zeros(3) if motion.mode.attitude_reacts else motion.turn
     steps = np.hstack([
         motion.base_steps(),
         np.broadcast_to(turn, (motion.edges, 3)),

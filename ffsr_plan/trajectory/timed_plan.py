@@ -126,7 +126,7 @@ def timed(motion: Motion, limits: Limits, clearance: float) -> TimedPlan:
     runs, robot = straight_runs(motion), motion.robot
     if not len(runs.first):
         raise InvalidInput("plan", "one in which nothing moves", "a plan that leads somewhere")
-    check_limits(limits, runs, robot, motion.floats)
+    check_limits(limits, runs, robot, motion.mode.floats)
     law, speeds = time_law(runs, limits.along(runs), limits.velocity_jump)
     leg = np.cumsum(speeds[:-1] == 0.0) - 1  # of each run: between which two rests it lies
     push, excess = _efforts(motion, runs, law, limits)

@@ -276,11 +276,11 @@ def _ends_and_limits(plan: Plan) -> list[str]:
     if np.abs(first - problem.start).max() > AGREEMENT:
         problems.append("the motion does not begin at the start")
     reached = last[7:] - problem.goal[7:]
-    if problem.mode != "free-floating":
+    if problem.mode.has_thrusters:
         reached = np.append(reached, last[:3] - problem.goal[:3])
     if np.max(np.abs(reached), initial=0.0) > AGREEMENT:
         problems.append("the motion does not end at the goal")
-    if problem.mode == "attitude-held":
+    if problem.mode.has_wheels:
         overlap = abs(float(last[3:7] @ problem.goal[3:7]))
         if overlap < 1.0 - AGREEMENT:
             problems.append("the motion does not end at the goal's attitude")
@@ -315,10 +315,10 @@ def _recomputed(plan: Plan, bodies: Bodies, problems: list[str]) -> tuple[float,
     turns = np.where(np.isinf(problem.robot.upper), (turns + np.pi) % (2 * np.pi) - np.pi, turns)
     straight = turns.mean(axis=0)  # postures displace nothing at start and goal
     weights = np.where(problem.robot.prismatic, problem.position_weight, problem.rotation_weight)
-    floats = problem.mode == "free-floating"  # what the base does there counts for nothing
+    floats = problem.mode.floats  # what the base does there counts for nothing
     along = np.zeros(3) if floats else (problem.goal[:3] - problem.start[:3]) / m
     nominal = np.sum((along * problem.position_weight) ** 2) + np.sum((straight * weights) ** 2)
-    if problem.mode == "attitude-held":
+    if problem.mode.has_wheels:
         overlap = min(1.0, abs(float(problem.start[3:7] @ problem.goal[3:7])))
         nominal += (2.0 * np.arccos(overlap) / m * problem.rotation_weight) ** 2
     across = (np.diff(q[:, :3], axis=0) - along) * (0.0 if floats else problem.position_weight)

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from ffsr_plan.dynamics.motion import MODES, Motion
+from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.verification.solids import least_sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies, pose
@@ -52,7 +53,7 @@ def look_at(seed: int, scenes: int = 12) -> Counts:
             (rng.normal(size=3) * 0.3, rng.uniform(-1.3, 1.3, 3), np.clip(values + step, -3, 3)),
         )
     )
-    mode = MODES[int(rng.integers(len(MODES)))]
+    mode = list(Mode)[int(rng.integers(len(Mode)))]
     motion = Motion(robot, mode, begin, end, np.stack([begin[:3], end[:3]]))
     q = motion.at(np.zeros(SAMPLES + 1, dtype=np.int64), np.linspace(0.0, 1.0, SAMPLES + 1))
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ffsr_plan.dynamics.motion import MODES, Motion
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.trajectory.limits import read_limits
 from ffsr_plan.trajectory.timed_plan import timed
 from tests.helpers.builders import random_configuration, random_robot
@@ -48,4 +48,4 @@ def inside(flight, count=30, share=1e-3):
     return ends[piece] + rng.uniform(2 * share, 1.0 - 2 * share, count) * length, share * length
 
 
-__all__ = ["MODES", "USUAL", "bent_motion", "flown", "inside", "read"]
+__all__ = ["USUAL", "bent_motion", "flown", "inside", "read"]

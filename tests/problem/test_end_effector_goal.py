@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core.rotations import to_angles
-from ffsr_plan.dynamics.motion import MODES, Motion
+from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.end_effector_goal import _checked, _end, _jacobian, _missed
 from ffsr_plan.robots.robot import robot_from_urdf
 from tests.helpers.builders import (
@@ -72,7 +73,7 @@ def planar_arm(base_mass):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", list(Mode))
 @given(seed=seeds)
 @settings(max_examples=12)
 def test_the_motion_to_the_goal_ends_with_the_frame_at_its_pose(mode, seed):
@@ -95,7 +96,7 @@ def test_the_motion_to_the_goal_ends_with_the_frame_at_its_pose(mode, seed):
         assert np.array_equal(goal[:3], base["base_position"])
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", list(Mode))
 @given(seed=seeds)
 @settings(max_examples=12)
 def test_the_slope_is_that_of_differences_of_the_end_of_the_path(mode, seed):
@@ -115,7 +116,7 @@ def test_the_slope_is_that_of_differences_of_the_end_of_the_path(mode, seed):
     assert _jacobian(target, begin, change) == pytest.approx(np.array(differences).T, abs=2e-5)
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", list(Mode))
 def test_a_plan_to_the_goal_arrives_and_verifies(robot, mode):
     start = robot.configuration(joints={"left_1": -0.6, "left_2": -0.9, "right_1": 0.2})
     end = robot.configuration((3.0, 0.5, 0.0), (0.3, 0, 0), {"left_1": 0.5, "left_2": -1.3})
@@ -147,7 +148,7 @@ def test_a_plan_to_the_goal_arrives_and_verifies(robot, mode):
     ],
     ids=["too far", "out of the plane", "by a millimetre"],
 )
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", list(Mode))
 def test_what_a_planar_arm_misses_is_its_closed_form(mode, target, missed):
     if target[2] != 0.0:  # in the plane it is within reach; what is left is the height
         missed = target[2]
@@ -213,7 +214,7 @@ def test_with_posture_axes_the_arms_bring_base_and_tool_to_the_goal():
     assert np.allclose(turned, rotation, atol=1e-6)
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", list(Mode))
 def test_a_problem_asks_for_a_pose_with_its_base_where_its_goal_has_it(robot, mode):
     lattice, start = fp.Lattice(4), robot.configuration(joints={"left_1": -0.6, "left_2": -0.9})
     there = robot.configuration((2, 0.5, 0), (0.4, 0, 0), joints={"left_1": 0.2})

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
-from ffsr_plan.dynamics.motion import MODES, Motion
+from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.travel_bound import TravelBound
 from ffsr_plan.robots.robot import robot_from_urdf
@@ -40,12 +41,12 @@ def traced(motion, layer, begin, end, base_step):
         "npij,pj->npi", poses.rotations[:, bound.links], bound.points
     )
     turned = np.einsum("nij,npj->npi", rotations.matrix(q[:, 3:7]), about)
-    own = q[:, None, :3] if motion.floats else times[:, None, None] * base_step
+    own = q[:, None, :3] if motion.mode.floats else times[:, None, None] * base_step
     places = turned + own
     return np.linalg.norm(np.diff(places, axis=0), axis=2).sum(axis=0), bound.first
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", list(Mode))
 @given(seeds)
 @settings(max_examples=150)
 def test_no_shape_outruns_the_bound_over_any_dyadic_interval(mode, seed):
@@ -59,7 +60,7 @@ def test_no_shape_outruns_the_bound_over_any_dyadic_interval(mode, seed):
         # the base keeps step with one of the points, so that little is left of its travel
         step = -whole.velocity[layer, int(rng.integers(whole.velocity.shape[1]))]
         step = step if rng.random() < 0.6 else rng.normal(size=3) * 0.3
-        step = np.zeros(3) if motion.floats else step
+        step = np.zeros(3) if motion.mode.floats else step
         ways, first = traced(motion, layer, begin, end, step)
         bounds = travel.bounds(layer, begin, end, step)
         assert np.all(np.maximum.reduceat(ways, first) <= bounds + 1e-12)

@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ruckig import InputParameter, Ruckig, Trajectory
 
+from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.trajectory.straight_runs import StraightRuns, straight_runs
 from ffsr_plan.trajectory.time_law import _s_curve, _trapezoid, time_law
-from tests.helpers.random_motions import MODES, USUAL, bent_motion, flown, read
+from tests.helpers.random_motions import USUAL, bent_motion, flown, read
 
 seeds = st.integers(0, 10_000)
 sizes = st.floats(-6.0, 6.0).map(lambda power: 10.0**power)
@@ -149,7 +150,7 @@ def test_edges_along_which_nothing_moves_take_no_time(robot):
     assert np.allclose(ends.configurations[:, 0], [0.0, 2.0], atol=1e-12)
 
 
-@given(seeds, st.sampled_from(MODES), st.booleans())
+@given(seeds, st.sampled_from(list(Mode)), st.booleans())
 @settings(max_examples=20)
 def test_corners_are_where_a_direction_changes(seed, mode, joints_bend):
     motion = bent_motion(seed, mode, 5, joints_bend)

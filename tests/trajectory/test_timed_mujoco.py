@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.helpers.random_motions import MODES, USUAL, bent_motion, flown, inside
+from ffsr_plan.dynamics.mode import Mode
+from tests.helpers.random_motions import USUAL, bent_motion, flown, inside
 
 mujoco = pytest.importorskip("mujoco", minversion="4")
 
@@ -35,7 +36,7 @@ def inverse_dynamics(robot, states):
 
 
 @pytest.mark.parametrize("seed", [7, 9, 39])
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", list(Mode))
 @pytest.mark.parametrize("joints_bend", [False, True])
 def test_the_engine_wants_the_same_thrust_wheels_and_torques(seed, mode, joints_bend):
     """A force through the centre of mass, a moment where wheels hold, nothing where it floats."""

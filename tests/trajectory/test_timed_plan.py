@@ -10,17 +10,18 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
+from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import wheel_momentum
 from ffsr_plan.robots.robot import robot_from_urdf
 from tests.helpers.builders import box, inertial, joint, link, urdf
-from tests.helpers.random_motions import MODES, USUAL, bent_motion, flown, inside
+from tests.helpers.random_motions import USUAL, bent_motion, flown, inside
 
 SEEDS = (7, 39)  # robots with hinges and slides
 seeds = st.integers(0, 10_000)
 cases = pytest.mark.parametrize(
     ("seed", "mode", "joints_bend"),
-    [(s, m, b) for s in SEEDS for m in MODES for b in (False, True)],
+    [(s, m, b) for s in SEEDS for m in list(Mode) for b in (False, True)],
 )
 
 
@@ -74,7 +75,7 @@ def test_velocities_and_accelerations_are_derivatives(seed, mode, joints_bend):
     assert np.allclose(pushes, now.base_acceleration, atol=size)
 
 
-@given(seeds, st.sampled_from(MODES), st.booleans(), st.booleans())
+@given(seeds, st.sampled_from(list(Mode)), st.booleans(), st.booleans())
 @settings(max_examples=12)
 def test_no_limit_is_exceeded_at_ten_thousand_instants_and_some_limit_is_met(
     seed, mode, joints_bend, smooth
@@ -106,7 +107,7 @@ def test_no_limit_is_exceeded_at_ten_thousand_instants_and_some_limit_is_met(
     assert 0.95 < max(shares) < 1.0 + 1e-6
 
 
-@given(seeds, st.sampled_from(MODES))
+@given(seeds, st.sampled_from(list(Mode)))
 @settings(max_examples=10)
 def test_half_the_speed_and_a_quarter_of_the_acceleration_double_the_duration(seed, mode):
     motion = bent_motion(seed, mode)
@@ -270,7 +271,7 @@ def test_thrusters_that_hold_the_base_against_an_arm_limit_how_fast_it_swings():
     assert flown(arm_only("free-floating"), joint_acceleration=0.2).delta_v == 0.0
 
 
-@given(seeds, st.sampled_from(MODES))
+@given(seeds, st.sampled_from(list(Mode)))
 @settings(max_examples=10)
 def test_joint_torques_stay_within_their_limits_and_meet_one(seed, mode):
     motion = bent_motion(seed, mode)

@@ -53,7 +53,7 @@ def ground_of(lattice: PostureLattice) -> Ground:
     problem, base = lattice.problem, lattice.base
     robot, tree, nominal = problem.robot, problem.scene.tree, base.nominal
     places = nominal.positions[:, None] + base.offsets
-    if nominal.floats:  # the centre of mass, at rest
+    if nominal.mode.floats:  # the centre of mass, at rest
         center = rotate(problem.start[3:7], lattice.centers[0, lattice.origin])
         places = np.broadcast_to(problem.start[:3] + center, places.shape)
     cap = np.inf if problem.clearance_cap is None else problem.clearance_cap

@@ -25,7 +25,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     problem, base = lattice.problem, lattice.base
     m, count = problem.lattice.divisions, len(base.offsets)
     nodes = np.zeros((m + 1, count))
-    if _origin_inside(lattice) and len(problem.scene) and not base.nominal.floats:
+    if _origin_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets
         scene = problem.scene
         apart = np.full(places.shape[:2], np.inf)

@@ -96,10 +96,10 @@ class PostureLattice:
         layers = 1 if self.alike else len(self.joint_values) - 1
         m, n, k = len(self.joint_values) - 1, *self.successors.shape
         nominal = self.base.nominal
-        still = IDENTITY if nominal.reacts else rotations.exp(nominal.turn)
+        still = IDENTITY if nominal.mode.attitude_reacts else rotations.exp(nominal.turn)
         found = np.tile(still, (layers, n, k, 1))
         there = np.tile(self.successors >= 0, (layers, 1, 1))
-        if nominal.reacts and self.problem.robot.nd:
+        if nominal.mode.attitude_reacts and self.problem.robot.nd:
             if self.alike:  # the way back, at k - 1 - step, undoes what the way there does
                 there &= np.arange(k) > k // 2
             i, p, step = np.nonzero(there)
@@ -136,7 +136,7 @@ class PostureLattice:
     @cached_property
     def centers(self) -> Array:
         """(m + 1, n, 3) centre of mass from the base origin [m]; zero where thrusters act."""
-        if not self.base.nominal.floats:
+        if not self.base.nominal.mode.floats:
             return np.zeros((*self.joint_values.shape[:2], 3))
         values = self.joint_values.reshape(-1, self.problem.robot.nd)
         found = centers_of_mass(self.problem.robot, values)

@@ -63,7 +63,7 @@ def plan_postures(
     """
     if not isinstance(planner, MaxMinAntSystem):
         reason = "posture axes are searched by the colony alone"
-        if problem.mode != "attitude-held":
+        if problem.mode.attitude_reacts:
             reason = (
                 "with posture axes the attitude at a node depends on the way there, so that no "
                 "search over nodes alone is exact"
@@ -215,7 +215,7 @@ def _displaced(lattice: PostureLattice, motion: Motion) -> tuple[Array, Array]:
     """Offsets of the base (m + 1, 3) and of the joints (m + 1, nd) from the nominal motion."""
     nominal = lattice.base.nominal
     offsets = motion.positions - nominal.positions
-    if motion.floats:
+    if motion.mode.floats:
         offsets = np.zeros_like(offsets)
     return offsets, motion.joint_values - nominal.joint_values
 
