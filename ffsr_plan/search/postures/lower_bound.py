@@ -61,8 +61,8 @@ def _turning_bound(lattice: PostureLattice) -> float:
     if not problem.reach_attitude:
         return 0.0
     there = lattice.successors >= 0
-    angles: Array = angle_between(IDENTITY, lattice.turns[:, there])
-    lengths = np.sqrt(problem.delta_d**2 + lattice.bends[:, there])
+    angles: Array = angle_between(IDENTITY, lattice.step_rotations[:, there])
+    lengths = np.sqrt(problem.delta_d**2 + lattice.squared_steps[:, there])
     rates = np.max(np.where(lengths > 0.0, angles / np.maximum(lengths, 1e-12), 0.0), initial=0.0)
     wanted = float(angle_between(problem.start[3:7], problem.goal[3:7])) - np.radians(1.0)
     return max(0.0, wanted / rates) if rates > 0.0 else 0.0
