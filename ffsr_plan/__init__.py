@@ -22,6 +22,7 @@ from ffsr_plan.core.errors import (
     PoseOutOfReach,
     StartInCollision,
     UnprovenPath,
+    WorkerDied,
 )
 from ffsr_plan.dynamics import momentum
 from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
@@ -84,6 +85,7 @@ __all__ = [
     "TimedPlan",
     "UnprovenPath",
     "WheelMomentum",
+    "WorkerDied",
     "arm_names",
     "certify_edge",
     "clearance",

@@ -225,7 +225,7 @@ def _posture_axis(entry: dict[str, Any]) -> PostureAxis:
 def write(plan: PlanData, path: Path) -> None:
     """Write `path`; an unfinished file never takes its place."""
     data = to_dict(plan)
-    text = json.dumps({"sha256": _digest(data), **data}, allow_nan=False, indent=1)
+    text = json.dumps({"sha256": digest(data), **data}, allow_nan=False, indent=1)
     write_whole("plan file", path, text)
 
 
@@ -246,7 +246,7 @@ def read(path: Path) -> PlanData:
         raise InvalidInput(what, str(error), "a plan file") from None
     _check_format(what, data)
     try:
-        unchanged = data.pop("sha256", None) == _digest(data)
+        unchanged = data.pop("sha256", None) == digest(data)
     except ValueError:  # not a number, which no plan file holds
         unchanged = False
     if not unchanged:
@@ -333,7 +333,8 @@ def _check_numbers(plan: PlanData) -> None:
                 )
 
 
-def _digest(data: dict[str, Any]) -> str:
+def digest(data: dict[str, Any]) -> str:
+    """SHA-256 of the canonical JSON text of a plan without its digest."""
     canonical = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(canonical.encode()).hexdigest()
 

@@ -21,11 +21,9 @@ import numpy as np
 from numba import njit
 
 from ffsr_plan.robots.shape_arrays import ROUND
-from ffsr_plan.search.postures.colony import _MISSED, posture_grid
+from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
 from ffsr_plan.search.postures.cost_kernels import (
-    DELTA_D,
     FREE_ATTITUDE_ERROR,
-    REACH,
     angle_to,
     clearance_at,
     compose,
@@ -35,10 +33,12 @@ from ffsr_plan.search.postures.cost_kernels import (
     new_workspace,
     node_cost,
 )
-from ffsr_plan.search.postures.lower_bound import _origin_inside
+from ffsr_plan.search.postures.lower_bound import origin_is_inside
+from ffsr_plan.search.postures.posture_grid import posture_grid
 from ffsr_plan.search.postures.walk_kernels import cost_to_go
 
 REACHABLE = math.radians(20.0)
+ATTITUDE_WEIGHT = AnnealingSettings().attitude_weights[1]  # [m] of cost a radian
 
 
 class Way(NamedTuple):
@@ -72,7 +72,7 @@ def cheapest_way(lattice, bins, reach=REACHABLE, ceiling=np.inf, grid=None):
     path = np.empty((m + 1, 2), dtype=np.int64)
     cost, queries = _programme(
         grid, 2.0 * np.arctan2(step_rotations[..., 2], step_rotations[..., 3]), ahead, 2.0 * reach / bins,
-        float(_MISSED[1]), ceiling + 1e-9, before, path,
+        ATTITUDE_WEIGHT, ceiling + 1e-9, before, path,
     )  # fmt: skip
     return Way(path, cost, queries)
 
@@ -91,7 +91,7 @@ def least_to_go(lattice, grid):
     """(m + 1, b, n) cost [m] that no way from a node to the goal falls below, at any attitude."""
     point = np.zeros((*grid.frames.shape[:2], 1, 15))
     point[..., [0, 4, 8]] = 1.0
-    inside = _origin_inside(lattice)
+    inside = origin_is_inside(lattice)
     shrunk = grid._replace(
         obstacles=grid.obstacles._replace(
             kinds=np.array([ROUND] if inside else [], dtype=np.int64)
@@ -106,7 +106,7 @@ def least_to_go(lattice, grid):
 def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
     m, count, bins, offsets = len(before) - 1, *before.shape[1:]
     steps, half = grid.successors.shape[1], bins // 2
-    workspace, quat, delta_d = new_workspace(), np.empty(4), grid.numbers[DELTA_D]
+    workspace, quat, delta_d = new_workspace(), np.empty(4), grid.delta_d
     free = is_free(grid)
     shape = count, bins, offsets
     cost, yaw = np.full(shape, np.inf), np.zeros(shape)
@@ -163,14 +163,14 @@ def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
                             grid.centers[i + 1, p], quat, workspace,
                         )  # fmt: skip
                     if clearance > 0.0:
-                        new_cost[p, k, b] = arrival + node_cost(grid.numbers, clearance, i + 1 < m)
+                        new_cost[p, k, b] = arrival + node_cost(grid, clearance, i + 1 < m)
         cost, new_cost = new_cost, cost
         yaw, new_yaw = new_yaw, yaw
     best, end = np.inf, -1
     b, p = grid.origin
     for k in range(bins):
         total = cost[p, k, b]
-        if grid.numbers[REACH] > 0.0 and total < np.inf:
+        if grid.reach_attitude and total < np.inf:
             _turned(grid, yaw[p, k, b], quat)
             total += weight * max(0.0, angle_to(quat, grid.goal) - FREE_ATTITUDE_ERROR)
         if total < best and total <= ceiling:

@@ -18,6 +18,7 @@ from ffsr_plan.core.rotations import slerp
 from ffsr_plan.search.postures.annealing_kernels import anneal, uncosted_path
 from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
 from ffsr_plan.search.postures.cost_kernels import PostureGrid, path_cost
+from ffsr_plan.search.postures.posture_grid import without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.walk_kernels import cost_to_go, lay_pheromone, walk
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, Trails
@@ -90,8 +91,7 @@ class PostureColony:
 
     def refuse(self, layer: int, path: IntArray) -> None:
         """Exclude the edge by which a path (m + 1, 2) leaves a layer."""
-        edge = np.array([[layer, *path[layer], *path[layer + 1]]], dtype=np.int64)
-        self.grid = self.grid._replace(refused=np.vstack([self.grid.refused, edge]))
+        self.grid = without_edge(self.grid, layer, path)
 
     def annealed(
         self, path: IntArray, shifts: int, hot: float, cold: float

@@ -25,7 +25,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     problem, base = lattice.problem, lattice.base
     m, count = problem.lattice.divisions, len(base.offsets)
     nodes = np.zeros((m + 1, count))
-    if _origin_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
+    if origin_is_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets
         scene = problem.scene
         apart = np.full(places.shape[:2], np.inf)
@@ -41,7 +41,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     return max(float(costs[m, base.origin]), _turning_bound(lattice) / problem.length_unit)
 
 
-def _origin_inside(lattice: PostureLattice) -> bool:
+def origin_is_inside(lattice: PostureLattice) -> bool:
     """Whether the base origin lies inside a shape of the root link."""
     shapes = lattice.problem.robot.primitives
     for k in np.flatnonzero((shapes.links == 0) & shapes.exact):

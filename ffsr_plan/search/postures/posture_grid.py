@@ -49,6 +49,12 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
     )
 
 
+def without_edge(grid: PostureGrid, layer: int, path: IntArray) -> PostureGrid:
+    """The same arrays with the edge refused by which a path (m + 1, 2) leaves a layer."""
+    edge = np.array([[layer, *path[layer], *path[layer + 1]]], dtype=np.int64)
+    return grid._replace(refused=np.vstack([grid.refused, edge]))
+
+
 def _radii(lattice: PostureLattice) -> Array:
     """(m + 1, n) largest distance of any point of the shapes from the centre of rotation [m]."""
     frames = lattice.frames

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.search.postures import colony
 from ffsr_plan.search.postures.annealing_kernels import anneal, shift, trial_cost, uncosted_path
 from ffsr_plan.search.postures.cost_kernels import new_workspace, path_cost
+from ffsr_plan.search.postures.posture_grid import posture_grid, without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from tests.helpers.spatial_robot import spatial_problem
 
@@ -38,10 +38,12 @@ PROBLEMS = {
 @cache
 def ground_and_path(name):
     """A lattice and a path on it that wanders."""
-    grid = colony.posture_grid(PostureLattice(PROBLEMS[name]()))
-    rng = np.random.default_rng(1)
+    lattice = PostureLattice(PROBLEMS[name]())
+    grid = posture_grid(lattice)
     start = np.tile(grid.origin, (len(grid.step_rotations) + 1, 1))
-    path, _ = colony.annealed(grid, rng, start, 500, 5.0, 2.0)
+    path = np.empty_like(start)
+    rng, weights = np.random.default_rng(1), np.array([5.0, WEIGHT])
+    anneal(grid, rng, start, 500, 5.0, 2.0, weights, path)
     return grid, path
 
 
@@ -97,16 +99,18 @@ def test_annealing_returns_the_cost_of_the_path_it_returns(name):
 def test_a_refused_edge_is_not_taken_again():
     grid, path = ground_and_path("no obstacles")
     layer = 10
-    refused = colony.bar(grid, layer, path)
+    refused = without_edge(grid, layer, path)
     assert path_cost(grid, uncosted_path(path), WEIGHT) < np.inf
     assert path_cost(refused, uncosted_path(path), WEIGHT) == np.inf
     aside = path.copy()
-    found, cost = colony.annealed(refused, np.random.default_rng(4), aside, 3000, 0.5)
+    found, rng = np.empty_like(path), np.random.default_rng(4)
+    weights = np.array([5.0, WEIGHT])
+    cost = anneal(refused, rng, aside, 3000, 0.5, 1e-3, weights, found)
     assert cost < np.inf
     assert not np.array_equal(found[layer : layer + 2], path[layer : layer + 2])
 
 
 def test_what_the_search_counts_is_the_objective_of_what_it_returns():
-    plan = fp.plan(fp.load_scenario("gate"), fp.MaxMinAntSystem(ants=5, cycles=5), seed=0)
+    plan = fp.plan(fp.load_scenario("gate"), fp.PostureAnnealing(ants=5, cycles=5), seed=0)
     assert plan.certificate.edges_refused == 0  # else the last search is not in the history
     assert plan.history.best[-1] == pytest.approx(plan.lattice_objective, rel=1e-9)

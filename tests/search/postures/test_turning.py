@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from ffsr_plan.search.postures.posture_planner import REACHED
 
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
@@ -14,6 +13,7 @@ from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import robot_from_urdf
 from ffsr_plan.search.postures.attitude_correction import _slopes, corrected
 from ffsr_plan.search.postures.lower_bound import lower_bound
+from ffsr_plan.search.postures.path_proof import ATTITUDE_TOLERANCE
 from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
 from tests.helpers.spatial_robot import curvatures, spatial_problem
 from tests.helpers.turning_programme import turning_oracle
@@ -73,7 +73,7 @@ def test_the_arms_turn_the_base_to_the_goal_and_come_back(degrees, seed):
 def test_the_joint_path_is_within_5_percent_of_the_oracle(degrees, seed):
     plan, yaw = planned(degrees, seed), math.radians(degrees)
     assert plan.lattice_objective <= 1.05 * oracle().least(yaw)
-    assert plan.lattice_objective >= oracle().least(yaw, REACHED) * (1 - 1e-9)
+    assert plan.lattice_objective >= oracle().least(yaw, ATTITUDE_TOLERANCE) * (1 - 1e-9)
 
 
 @pytest.mark.parametrize("degrees", range(5, 80, 10))
@@ -155,7 +155,7 @@ def test_a_goal_that_the_arms_cannot_turn_to_is_refused_with_what_is_missing():
     reach = turning_oracle(problem, math.radians(0.1), math.radians(200)).farthest
     assert caught.value.wanted == pytest.approx(math.radians(120))
     short = caught.value.wanted - reach
-    assert REACHED < short <= caught.value.missed + 1e-9
+    assert ATTITUDE_TOLERANCE < short <= caught.value.missed + 1e-9
     assert caught.value.missed < short + 0.25 * reach
 
 
