@@ -35,6 +35,13 @@ class InvalidInput(FfsrPlanError, ValueError):  # noqa: N818 - the name is part 
         return type(self), (self.what, self.value, self.allowed)
 
 
+class InternalError(FfsrPlanError):
+    """A broken invariant of the package itself."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"internal error: {reason}; please report it")
+
+
 class PlanningError(FfsrPlanError):
     """The input is well formed, but no plan exists or none was found."""
 

@@ -10,7 +10,7 @@ optimum (lazy search).
 from __future__ import annotations
 
 from ffsr_plan.core.arrays import IntArray
-from ffsr_plan.core.errors import PlanningError
+from ffsr_plan.core.errors import InternalError
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.lattice.shortest_path import lazy_shortest_path
 
@@ -37,5 +37,5 @@ def lattice_optimum(roadmap: Roadmap) -> IntArray:
         edge_costs, node_costs, roadmap.status, roadmap.lattice.origin, objection
     )
     if path is None:
-        raise roadmap.no_path() or PlanningError("the lattice optimum was lost")
+        raise roadmap.no_path() or InternalError("no shortest path, but the roadmap has a path")
     return path
