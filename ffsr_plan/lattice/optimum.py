@@ -1,10 +1,10 @@
 """The exact lattice optimum: a shortest path over the layers, edges certified on demand.
 
 F is additive over nodes and edges on a lattice whose nodes have one configuration each. Unproven
-edges are taken as free, nodes not yet evaluated as clear as their neighbours allow; the shortest
-path is looked at, and where it turns out worse than thought the search is taken up again behind it,
-until a path holds. Since both assumptions can only shorten a path, the first one that holds is the
-optimum (lazy search).
+edges are assumed free, and nodes not yet evaluated are assumed to have the largest clearance that
+their neighbours allow. The nodes and edges of the shortest path are then evaluated; where one is
+worse than assumed, the search resumes from its layer. Both assumptions can only shorten a path, so
+the first path that holds is the optimum (lazy search).
 """
 
 from __future__ import annotations

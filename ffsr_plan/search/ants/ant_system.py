@@ -15,7 +15,7 @@ from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
 
-_FAINT = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
+_LEAST_PHEROMONE = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class AntSystem(LatticePlanner):
         """Run the colony.
 
         Raises:
-            NoPath: proven, when every way on from the start has been refused.
+            NoPath: proven, when every edge that leaves the start has been refused.
         """
         monitor = monitor or SearchMonitor()
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
@@ -92,7 +92,7 @@ class AntSystem(LatticePlanner):
                 deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
                 tau *= self.rho
                 np.add.at(tau, edges, deposit)
-                np.maximum(tau, _FAINT, out=tau)
+                np.maximum(tau, _LEAST_PHEROMONE, out=tau)
                 np.add.at(laid, edges, deposit)
                 np.add.at(walked, edges, 1)
                 distinct = len(np.unique(paths, axis=0))

@@ -1,8 +1,9 @@
-"""Local search on a path of the lattice, compiled.
+"""Compiled local search on a path of the lattice.
 
-The neighbourhood of a path are all paths that are displaced from it, on every layer independently,
-by one of a few steps: to the nodes next to it, and some farther along an axis. It holds every shift
-of every segment by such a step, and a small shortest-path problem finds its best member.
+The neighbourhood of a path consists of all paths that are displaced from it, on every layer
+independently, by one of a few steps: to the adjacent nodes, and to some farther along an axis. It
+contains every shift of every segment by such a step; a small shortest-path problem selects its best
+member.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from numba import njit
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 
-_ENOUGH = 1e-12  # relative improvement below which a better path does not count
+_LEAST_GAIN = 1e-12  # relative improvement that counts
 
 
 def neighbourhood(indices: IntArray, wide: bool) -> IntArray:
@@ -95,19 +96,19 @@ def _best_neighbour(
 
 @njit(cache=True, nogil=True)
 def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags) -> float:
-    """Put the node of each layer in turn to the best place between its neighbours; the gain."""
+    """Move the node of each layer in turn to the best one between its neighbours; the gain in F."""
     m, n = len(path) - 1, len(edge_costs)
     gain = 0.0
     for i in range(1, m):
         tail, now, head = path[i - 1], path[i], path[i + 1]
-        here = edge_costs[tail, now] + node_costs[i, now] + edge_costs[now, head]
-        best, choice = here, now
+        present = edge_costs[tail, now] + node_costs[i, now] + edge_costs[now, head]
+        best, choice = present, now
         for k in range(n):
             cost = edge_costs[tail, k] + node_costs[i, k] + edge_costs[k, head]
             if cost < best and open_edges[i - 1, tail, k] and open_edges[i, k, head]:
                 best, choice = cost, k
         path[i] = choice
-        gain += here - best
+        gain += present - best
     return gain
 
 
@@ -117,14 +118,14 @@ def improve(
 ) -> float:
     """Improve a path in place until its neighbourhood holds no better one; return its cost.
 
-    A path with closed edges is mended if its neighbourhood has a way round; else the cost is
-    infinite.
+    A path with closed edges is replaced if its neighbourhood holds an open one; otherwise the cost
+    is infinite.
     """
     cost = path_cost(path, edge_costs, node_costs, open_edges)
     while True:
         better = _best_neighbour(path, edge_costs, node_costs, open_edges, table)
         if better < np.inf:
             better -= _best_moves(path, edge_costs, node_costs, open_edges)
-        if not better < cost * (1.0 - _ENOUGH):
+        if not better < cost * (1.0 - _LEAST_GAIN):
             return min(better, cost)
         cost = better

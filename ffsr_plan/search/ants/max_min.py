@@ -18,8 +18,8 @@ from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult
 if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colony runs
     from ffsr_plan.search.ants.max_min_kernels import State
 
-_LARGE = 100  # nodes a layer from which on pheromone lies on nodes, not on edges
-_TRAILS = 10_000  # edges whose trails are kept for pictures
+_LARGE_LAYER = 100  # nodes; from this size on pheromone lies on nodes, not on edges
+_MOST_TRAILS = 10_000  # edges whose trails are kept for pictures
 _CYCLES_PER_TIME_CHECK = 16  # cycles between two checks of the time
 
 
@@ -29,8 +29,8 @@ class MaxMinAntSystem(LatticePlanner):
 
     What differs from the paper's colony: ants see what a node costs, not only how far it is
     (visibility 1 / (d_pq + delta / d_imin)); only one path a cycle lays pheromone, which stays
-    between bounds; some ants of a cycle are improved by local search; the colony starts anew when
-    it no longer gets better. Paths are certified before they count; an edge that is refused is
+    between bounds; some ants of a cycle are improved by local search; the colony restarts when
+    it no longer improves. Paths are certified before they count; a refused edge is
     closed. On lattices with additive cost the local search does most of the work, as the
     documentation shows.
 
@@ -78,8 +78,8 @@ class MaxMinAntSystem(LatticePlanner):
         """Run the colony.
 
         Raises:
-            NoPath: proven, when every way on from the start has been refused.
-            PlanningError: no ant found a path, though there is one or that is not known.
+            NoPath: proven, when every edge that leaves the start has been refused.
+            PlanningError: no ant found a path, which does not prove that there is none.
         """
         from ffsr_plan.search.ants import max_min_kernels as kernel
         from ffsr_plan.search.ants.open_edges import find_open_edges
@@ -102,7 +102,7 @@ class MaxMinAntSystem(LatticePlanner):
         if not np.isfinite(state.values[kernel.BEST]):
             raise (None if interrupted else roadmap.no_path()) or PlanningError(
                 f"none of {self.ants} ants found a free path in {state.counters[kernel.CYCLE]} "
-                "cycles, which does not mean that there is none: more cycles may find it"
+                "cycles, which does not prove that there is none: more cycles may find one"
             )
         done = state.records[: state.counters[kernel.CYCLE]]
         history = History.of_rows(done)
@@ -148,7 +148,7 @@ class MaxMinAntSystem(LatticePlanner):
         chance = 0.05 ** (1.0 / m)
         least = (1.0 - chance) / (12.0 * chance)
         patience = self.patience or np.inf
-        rows = 1 if n >= _LARGE else n
+        rows = 1 if n >= _LARGE_LAYER else n
         indices = roadmap.lattice.indices
         nowhere = np.zeros(m + 1, dtype=np.int64)
         return State(
@@ -186,7 +186,7 @@ class MaxMinAntSystem(LatticePlanner):
     def _visibility(self, edge_costs: Array, node_costs: Array) -> Array:
         """(m, n, n) eta^beta, eta = 1 / (d_pq + delta / d_imin)."""
         n = len(edge_costs)
-        beta = (2.0 if n < _LARGE else 5.0) if self.beta is None else self.beta
+        beta = (2.0 if n < _LARGE_LAYER else 5.0) if self.beta is None else self.beta
         seen = np.where(np.isfinite(node_costs[1:]), node_costs[1:], 0.0) * float(self.cost_aware)
         cost = np.maximum(edge_costs[None] + seen[:, None, :], 1e-12)
         cost /= cost.min()
@@ -211,9 +211,9 @@ def _trails(state: State) -> Trails:
 
     call(write_untouched_rows, state)
     used = np.flatnonzero(state.walked)
-    if len(used) > _TRAILS:
+    if len(used) > _MOST_TRAILS:
         ants = state.walked.ravel()[used]
-        used = np.sort(used[np.argsort(-ants, kind="stable")[:_TRAILS]])
+        used = np.sort(used[np.argsort(-ants, kind="stable")[:_MOST_TRAILS]])
     edges = np.unravel_index(used, state.walked.shape)
     layer, tail, head = edges
     level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]

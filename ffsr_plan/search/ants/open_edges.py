@@ -29,7 +29,7 @@ def find_open_edges(admissible: Flags, status: States) -> tuple[Flags, IntArray]
 def close_refused(
     layer: int, status: States, open_edges: Flags, open_counts: IntArray, changed: Flags
 ) -> None:
-    """Close the refused edges of one layer, and what they turn into dead ends.
+    """Close the refused edges of one layer and those that lead to dead ends then.
 
     `changed` (m, n) is set for every node whose open edges have changed.
     """
