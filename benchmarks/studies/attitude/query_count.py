@@ -1,6 +1,6 @@
-"""Counts the distance queries of the colony on lattices with posture axes.
+"""Number of distance queries of the colony on lattices with posture axes.
 
-Its kernels are compiled anew from their own source, in this process alone, with a `clearance_at`
+The kernels are compiled anew from their own source, in this process alone, with a `clearance_at`
 that adds one behind the kinds of the shapes each time it is asked. Paths stay the same bit for
 bit; times grow by about a fifth. Only `counting_ground` may then make the ground that they walk on.
 """

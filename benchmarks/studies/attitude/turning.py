@@ -1,11 +1,12 @@
-"""Turning by arm motion alone: how exactly, how far above the least joint path, how fast.
+"""Attitude manoeuvres by arm motion alone: error, length above the optimum, time.
 
     python -m benchmarks.studies.attitude.turning
 
 The planar dual-arm robot turns its base by 5 to 75 degrees, either way, and ends in the posture it
-began with; lengths are held against the dynamic programme of tests/helpers/turning_programme.py. A robot with two arms
-of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last, the parts of the search against each
-other. Writes docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
+began with; lengths are compared with the dynamic programme of tests/helpers/turning_programme.py.
+A robot with two arms of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last,
+the parts of the search are compared with each other. Writes
+docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
 """
 
 import argparse
@@ -41,21 +42,25 @@ SPATIAL = ((10, 60, 4, 0.3), (30, 60, 4, 0.3), (45, 80, 4, 0.4), (60, 80, 4, 0.4
 
 
 class Turn(NamedTuple):
-    """One plan."""
+    """One plan.
+
+    Attributes:
+        before: attitude error before the correction [deg].
+        after: attitude error after the correction [deg].
+        lattice: L of the lattice path [m].
+        final: L after the correction [m].
+        seconds: time of the plan.
+    """
 
     before: float
-    """Error before the correction [deg]."""
     after: float
-    """And behind it [deg]."""
     lattice: float
-    """L of the lattice path [m]."""
     final: float
-    """L behind the correction [m]."""
     seconds: float
 
 
 def planar(degrees: float) -> fp.Problem:
-    """Turn by so much and come back to the same posture."""
+    """The planar robot turns by `degrees` and returns to the same posture."""
     robot = fp.load_robot("planar_dual_arm")
     start = robot.configuration(joints=REST)
     goal = robot.configuration((0, 0, 0), (math.radians(degrees), 0, 0), REST)
@@ -63,21 +68,21 @@ def planar(degrees: float) -> fp.Problem:
 
 
 def turn(problem: fp.Problem, seed: int, planner: fp.MaxMinAntSystem | None = None) -> Turn | None:
-    """Plan; None where the goal was not reached."""
+    """Plan; None if the goal attitude was not reached."""
     try:
         plan = fp.plan(problem, planner, seed)
     except fp.AttitudeOutOfReach:
         return None
     error = plan.arrival_attitude_error
     if error is None or not np.isfinite(error):
-        raise RuntimeError("a plan without the attitude that was asked for")
+        raise RuntimeError("a plan that does not reach the goal attitude")
     return Turn(
         _before(plan), math.degrees(error), plan.lattice_objective, plan.objective, plan.seconds
     )
 
 
 def _before(plan: fp.Plan) -> float:
-    """Attitude error of the lattice path that the plan's nodes name [deg]."""
+    """Attitude error of the lattice path through the plan's nodes [deg]."""
     lattice, problem = PostureLattice(plan.problem), plan.problem
     number = {tuple(index): p for p, index in enumerate(lattice.indices.tolist())}
     nodes = [number[tuple(node)] for node in plan.nodes.tolist()]
@@ -88,7 +93,7 @@ def _before(plan: fp.Plan) -> float:
 
 
 def planar_table(angles: Iterable[int], seeds: int) -> str:
-    """How the planar robot turns, either way."""
+    """Results of the planar robot, either direction."""
     oracle = turning_oracle(planar(10), math.radians(0.1))
     rows, every, missed = [], [], 0
     for size in angles:
@@ -129,7 +134,7 @@ def _row(
 
 
 def spatial_table(settings: Iterable[tuple[int, int, int, float]], seeds: int) -> str:
-    """How the robot with three posture axes turns about five axes."""
+    """Results of the robot with three posture axes, about five axes."""
     rows = []
     for degrees, divisions, levels, spacing in settings:
         for name, axis in AXES.items():
@@ -153,7 +158,7 @@ def spatial_table(settings: Iterable[tuple[int, int, int, float]], seeds: int) -
 
 
 def parts_table(angles: Sequence[int], seeds: int) -> str:
-    """The default, without pheromone, and without ants."""
+    """Results of the default search, without pheromone, and without ants."""
     oracle = turning_oracle(planar(10), math.radians(0.1))
     colony = fp.MaxMinAntSystem
     planners = {
@@ -198,9 +203,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     parts = [
         "# Turning by arm motion alone",
         f"`python -m benchmarks.studies.attitude.turning {given}".rstrip()
-        + "`, times on a machine that did other work.",
-        "Errors are the largest over all seeds. The oracle is the least joint path that ends "
-        "within half a degree of the goal, up to which the search counts an error as none.",
+        + "`, times on a machine under other load.",
+        "Errors are the largest over all seeds. The oracle is the shortest joint path that ends "
+        "within half a degree of the goal; the search does not penalise smaller errors.",
         f"## Planar, {options.seeds} seeds",
         planar_table(options.angles, options.seeds),
         f"## Three posture axes, {options.spatial_seeds} seeds",
@@ -208,7 +213,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     ]
     if options.parts_seeds:
         parts += [
-            "## What the ants contribute",
+            "## Contribution of the ants",
             f"30, 60 and 75 degrees, {options.parts_seeds} seeds other than above. Annealing tries "
             f"{shifts} paths for each layer in every row; a cycle of ants tries 30 paths and 200 "
             "shifts more.",

@@ -1,10 +1,10 @@
-"""What each part of the proof saves: distance queries between the ends of edges.
+"""Distance queries of a proof, by the travel bound that it uses.
 
     python -m benchmarks.studies.proofs.certification
 
-The same edges are certified with a simple bound on travel (every joint at its fastest, in the worst
-direction), with the sharp one for all links together, and link by link. Verdicts are the same but
-for edges that come nearer than the tolerance.
+The same edges are certified with a simple bound on travel (every joint at its largest rate, in the
+worst direction), with the sharp bound for all links together, and link by link. Verdicts differ
+only for edges whose clearance falls below the tolerance.
 """
 
 import argparse
@@ -101,7 +101,7 @@ def certified(task: Task) -> dict[str, list[Verdict]]:
 
 
 def tasks(scenes: int, edges: int) -> Iterator[tuple[str, Task]]:
-    """All that is to be certified, by group."""
+    """All edges to be certified, by group."""
     for seed in range(FIRST_SEED, FIRST_SEED + scenes):
         try:
             problem = random_problem(seed, 0.0)
@@ -114,6 +114,7 @@ def tasks(scenes: int, edges: int) -> Iterator[tuple[str, Task]]:
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--edges", type=int, default=2000, help="in each scene, and arm swings")
     parser.add_argument("--scenes", type=int, default=20)
@@ -137,11 +138,12 @@ def main() -> None:
         "for a refused one",
     ]  # fmt: skip
     publish(
-        f"# What a proof costs\n\n`python -m benchmarks.studies.proofs.certification --edges {args.edges} "
-        f"--scenes {args.scenes}`\n\nEdges of lattices between neighbouring offsets, and arms that "
+        "# Queries of a proof\n\n`python -m benchmarks.studies.proofs.certification "
+        f"--edges {args.edges} --scenes {args.scenes}`\n\nEdges of lattices between neighbouring "
+        "offsets, and arms that "
         "swing by half a radian a joint while the\nbase reacts; both ends free. A query is Coal's "
         "distance between the ends of an edge, over all pairs.\nOn these lattices the base moves "
-        "far more than the arms, so that all bounds are much alike there.\n\n"
+        "far more than the arms, so that all bounds are similar there.\n\n"
         + table(header, rows)
         + "\n",
         args.out,
