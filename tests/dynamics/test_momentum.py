@@ -74,7 +74,7 @@ def angular_momentum(robot, q, v):
 
 @given(seeds)
 @settings(max_examples=30)
-def test_equation_1_matches_finite_differences_of_the_integrated_angles(seed):
+def test_equation_1_matches_differences_of_integrated_angles(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     q = random_configuration(robot, rng)
     rate = rng.uniform(-1, 1, robot.nd)
@@ -97,7 +97,7 @@ def test_equation_1_says_that_it_is_singular_at_beta_90_degrees(robot):
 
 @given(seeds)
 @settings(max_examples=30)
-def test_the_generalized_jacobian_matches_finite_differences_along_a_reacting_motion(seed):
+def test_the_generalized_jacobian_matches_finite_differences(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     model = robot.model
     q = random_configuration(robot, rng)

@@ -47,7 +47,7 @@ def path(robot, seed, corners=2, spread=1.5):
     return np.random.default_rng(seed).uniform(-spread, spread, (corners, robot.nd))
 
 
-def test_the_dual_arm_of_maniSat_turns_its_base_as_its_closed_form_says():  # noqa: N802
+def test_the_dual_arm_rotates_its_base_as_in_closed_form():
     """13.3 kg base, two arms of two links; yaw from an independent closed form."""
     arm = []
     for side, y, yaw in (("left", 0.2, np.pi / 2), ("right", -0.2, -np.pi / 2)):

@@ -173,7 +173,7 @@ def test_dictionaries_that_are_no_plan_are_refused(data):
         fp.Plan.from_dict(data)
 
 
-def test_a_dictionary_with_fields_changed_for_the_impossible_is_refused(plan):
+def test_a_dictionary_with_impossible_fields_is_refused(plan):
     for field, value in (("clearances", [0.1]), ("length", "long"), ("nodes", [99] * 7)):
         with pytest.raises(fp.InvalidInput):
             fp.Plan.from_dict(plan.to_dict() | {field: value})

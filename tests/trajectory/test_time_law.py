@@ -32,7 +32,7 @@ def way(phases, speed=0.0):
 
 
 @given(sizes, sizes, sizes)
-def test_from_rest_to_rest_is_full_acceleration_full_speed_full_braking(length, top, push):
+def test_rest_to_rest_uses_full_acceleration_speed_and_braking(length, top, push):
     """Bang-bang where the speed is not reached, a trapezoid where it is."""
     phases = _trapezoid(length, 0.0, 0.0, top, push)
     reached = top**2 < push * length
@@ -60,14 +60,14 @@ def test_between_any_two_speeds_it_is_as_fast_as_ruckig(length, top, push, first
 
 
 @given(sizes, sizes)
-def test_where_jerk_alone_matters_the_duration_is_its_closed_form(length, jerk):
+def test_a_jerk_limited_duration_is_its_closed_form(length, jerk):
     second = np.cbrt(length / jerk)
     phases = _s_curve(length, 1e4 * length / second, 1e7 * length / second**2, jerk)
     assert duration(phases) == pytest.approx(4.0 * np.cbrt(length / (2.0 * jerk)), rel=1e-9)
 
 
 @given(sizes, sizes, st.floats(0.01, 1.0), st.floats(0.01, 0.99))
-def test_an_s_curve_that_reaches_its_limits_takes_its_closed_form(length, top, soft, full):
+def test_an_s_curve_at_its_limits_takes_its_closed_form(length, top, soft, full):
     """L / v + v / a + a / j, where a^2 <= v j, and v^2 / a + v a / j <= L."""
     push = top**2 * (1.0 + soft) / (full * length)
     jerk = push**2 / (top * soft)

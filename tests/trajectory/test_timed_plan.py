@@ -77,9 +77,7 @@ def test_velocities_and_accelerations_are_derivatives(seed, mode, joints_bend):
 
 @given(seeds, st.sampled_from(list(Mode)), st.booleans(), st.booleans())
 @settings(max_examples=12)
-def test_no_limit_is_exceeded_at_ten_thousand_instants_and_some_limit_is_met(
-    seed, mode, joints_bend, smooth
-):
+def test_no_limit_is_exceeded_and_some_limit_is_attained(seed, mode, joints_bend, smooth):
     motion = bent_motion(seed, mode, joints_bend=joints_bend)
     given = USUAL | {"joint_velocity": 0.15, "base_velocity": 0.3, "turn_velocity": 0.05}
     if smooth:
@@ -109,7 +107,7 @@ def test_no_limit_is_exceeded_at_ten_thousand_instants_and_some_limit_is_met(
 
 @given(seeds, st.sampled_from(list(Mode)))
 @settings(max_examples=10)
-def test_half_the_speed_and_a_quarter_of_the_acceleration_double_the_duration(seed, mode):
+def test_half_speed_and_quarter_acceleration_double_the_duration(seed, mode):
     motion = bent_motion(seed, mode)
     fast = flown(
         motion, joint_velocity=0.2, joint_acceleration=0.05, thruster_acceleration=0.02,
@@ -128,7 +126,7 @@ def test_half_the_speed_and_a_quarter_of_the_acceleration_double_the_duration(se
         assert np.allclose(getattr(one, name), 4.0 * getattr(other, name), rtol=1e-6, atol=1e-9)
 
 
-def test_every_configuration_is_one_of_the_plan_and_s_never_goes_back(fig2a_plan):
+def test_configurations_are_the_plans_and_s_never_decreases(fig2a_plan):
     flight = fig2a_plan.timed(joint_acceleration=0.1, thruster_acceleration=0.01)
     states = flight.at(np.linspace(0.0, flight.duration, 2001))
     assert np.all(np.diff(states.parameters) >= 0.0)
@@ -156,7 +154,7 @@ def test_momentum_is_what_the_mode_says(seed, mode, joints_bend):
 
 
 @cases
-def test_thrust_is_mass_times_the_acceleration_of_the_centre_of_mass(seed, mode, joints_bend):
+def test_thrust_is_mass_times_acceleration_of_the_mass_centre(seed, mode, joints_bend):
     motion = bent_motion(seed, mode, joints_bend=joints_bend)
     flight = flown(motion, **USUAL)
     times, h = inside(flight, share=1e-2)
@@ -183,7 +181,7 @@ def test_delta_v_is_the_integral_of_thrust_over_mass(seed, mode, joints_bend):
 
 
 @cases
-def test_what_torques_thrust_and_wheels_do_is_the_change_of_kinetic_energy(seed, mode, joints_bend):
+def test_the_work_of_all_forces_is_the_change_of_kinetic_energy(seed, mode, joints_bend):
     motion = bent_motion(seed, mode, joints_bend=joints_bend)
     robot, flight = motion.robot, flown(motion, **USUAL)
     data = robot.model.createData()
@@ -211,7 +209,7 @@ def test_what_torques_thrust_and_wheels_do_is_the_change_of_kinetic_energy(seed,
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_wheels_turn_the_base_by_what_they_lose_of_their_momentum(seed):
+def test_wheel_torque_is_minus_the_rate_of_wheel_momentum(seed):
     motion = bent_motion(seed, "attitude-held")
     flight = flown(motion, **USUAL)
     times, h = inside(flight)
@@ -227,7 +225,7 @@ def test_wheels_turn_the_base_by_what_they_lose_of_their_momentum(seed):
     assert np.allclose(torque, lost, atol=1e-5 * np.abs(torque).max())
 
 
-def test_wheels_store_the_same_per_pace_as_under_another_time_law():
+def test_wheel_momentum_per_pace_does_not_depend_on_the_time_law():
     motion = bent_motion(7, "attitude-held")
     flight = flown(motion, **USUAL)
     times, h = inside(flight)
@@ -258,7 +256,7 @@ def arm_only(mode="free-flying"):
     return Motion(robot, mode, start, goal, np.zeros((5, 3)))
 
 
-def test_thrusters_that_hold_the_base_against_an_arm_limit_how_fast_it_swings():
+def test_thrusters_that_hold_the_base_limit_the_speed_of_an_arm():
     motion = arm_only()
     free = flown(motion, joint_acceleration=0.2, thruster_acceleration=1.0)
     for limit in (0.02, 0.002):
@@ -292,7 +290,7 @@ def bend(degrees, **given):
     return flown(straight(robot, way), thruster_acceleration=0.02, **given)
 
 
-def test_a_pulse_passes_a_corner_at_the_speed_at_which_it_suffices():
+def test_a_pulse_passes_a_corner_at_the_largest_possible_speed():
     """Closed form: v' - v of two velocities of equal size v at an angle is 2 v sin(angle / 2)."""
     rest, passed = bend(40.0), bend(40.0, velocity_jump=0.1)
     speed = 0.1 / (2.0 * np.sin(np.radians(20.0)))
@@ -310,7 +308,7 @@ def test_a_pulse_passes_a_corner_at_the_speed_at_which_it_suffices():
 
 
 @pytest.mark.parametrize("degrees", [3.0, 40.0, 90.0, 170.0])
-def test_a_pulse_that_takes_time_cuts_the_corner_by_what_is_stated(degrees):
+def test_a_finite_pulse_cuts_the_corner_by_the_stated_distance(degrees):
     """Evenly over its length: the path's velocity averaged over as long, flown at a steady pace."""
     flight = bend(degrees, velocity_jump=0.05)
     (pulse,), (corner,) = flight.pulses, flight.pulse_times
@@ -363,7 +361,7 @@ def test_arms_keep_their_pace_through_a_pulse(robot):
 
 
 @pytest.mark.parametrize("mode", ["free-flying", "attitude-held"])
-def test_slowed_down_for_a_torque_arms_and_turn_still_keep_their_pace_through_pulses(mode):
+def test_slowing_for_a_torque_keeps_the_pace_through_pulses(mode):
     motion = bent_motion(7, mode)
     given = USUAL | {"velocity_jump": 0.3, "joint_torque": 1e-3}
     flight = flown(motion, **given)
@@ -377,7 +375,7 @@ def test_slowed_down_for_a_torque_arms_and_turn_still_keep_their_pace_through_pu
     assert 0.9e-3 < np.abs(states.torques).max() < 1e-3
 
 
-def test_a_base_that_wheels_turn_rests_where_it_would_have_to_turn_at_another_pace():
+def test_a_base_rotated_by_wheels_rests_where_its_rate_changes():
     q = bent_motion(7, "attitude-held")
     uneven = np.linspace(0.0, 1.0, 5)[:, None] ** 2
     robot, start = q.robot, q.configurations()[0]
@@ -397,7 +395,7 @@ def test_where_joints_have_a_corner_no_pulse_helps():
     assert len(flight.pulses) == 0
 
 
-def test_pulses_that_cut_deeper_than_what_is_proven_clear_are_refused(fig2a_plan):
+def test_pulses_that_cut_deeper_than_the_clearance_are_refused(fig2a_plan):
     clear = fig2a_plan.certificate.least_clearance
     most = np.sqrt(8.0 * 0.01 * clear)
     given = {"joint_acceleration": 0.1, "thruster_acceleration": 0.01}
@@ -436,7 +434,7 @@ def test_a_base_that_wheels_turn_needs_a_limit_for_it():
         flown(motion, joint_acceleration=0.1, thruster_acceleration=0.1)
 
 
-def test_joints_keep_the_velocities_of_the_urdf_unless_told_otherwise(robot):
+def test_joints_keep_the_urdfs_velocities_by_default(robot):
     start = robot.configuration()
     goal = robot.configuration(joints={"left_1": 1.6, "right_1": 0.8})
     motion = Motion(robot, "free-floating", start, goal, np.zeros((4, 3)))

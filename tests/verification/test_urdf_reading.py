@@ -52,7 +52,7 @@ def test_the_pairs_that_must_not_touch_are_those_of_the_robot(seed):
     assert {frozenset((a.link, b.link)) for a, b in Bodies(robot.urdf).pairs()} == planned
 
 
-def test_links_rigidly_joined_are_no_pair_but_each_is_one_with_what_lies_farther():
+def test_rigidly_joined_links_are_no_pair_but_others_are():
     cube = inertial(1.0, (1.0, 1.0, 1.0)) + box((0.2, 0.2, 0.2))
     text = urdf(
         link("base", cube), link("mast", cube), link("arm", cube), link("hand", cube),
