@@ -68,7 +68,7 @@ def test_clearances_of_any_configurations(benchmark, problem, reference):
 
 def test_reaction_of_the_nominal_joint_path(benchmark, problem, reference):
     joints = LayeredLattice(problem).nominal.joint_values
-    benchmark(lambda: Reaction(problem.robot, joints))
+    benchmark(lambda: Reaction.along(problem.robot, joints))
     record(benchmark, reference)
 
 

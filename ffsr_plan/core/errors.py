@@ -35,6 +35,10 @@ class InvalidInput(FfsrPlanError, ValueError):  # noqa: N818 - the name is part 
         return type(self), (self.what, self.value, self.allowed)
 
 
+class IntegrationError(FfsrPlanError):
+    """A numerical integration did not converge."""
+
+
 class PlanningError(FfsrPlanError):
     """The input is well formed, but no plan exists or none was found."""
 

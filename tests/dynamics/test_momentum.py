@@ -80,7 +80,7 @@ def test_equation_1_matches_differences_of_integrated_angles(seed):
     rate = rng.uniform(-1, 1, robot.nd)
     h = 1e-4
     theta = robot.joint_values(q)
-    ways = [Reaction(robot, np.array([theta, theta + s * h * rate])) for s in (1, -1)]
+    ways = [Reaction.along(robot, np.array([theta, theta + s * h * rate])) for s in (1, -1)]
     ahead, behind = (
         rotations.to_angles(rotations.multiply(q[3:7], way.increments[0])) for way in ways
     )

@@ -199,7 +199,7 @@ def test_verification_notices_world_axes_passed_off_as_the_bases(monkeypatch):
 
 def test_without_wheels_nothing_is_stored_and_the_mode_is_named(fig2a_plan):
     assert fig2a_plan.verify(2).wheel_momentum_error is None
-    with pytest.raises(fp.InvalidInput, match="'attitude-held'; otherwise there are no wheels"):
+    with pytest.raises(fp.InvalidInput, match="'attitude-held'; other modes have no wheels"):
         fig2a_plan.wheel_momentum(duration=60.0)
 
 

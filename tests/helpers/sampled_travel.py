@@ -34,7 +34,7 @@ class SampledEdge(NamedTuple):
             return rotations.multiply(self.start, rotations.exp(times[:, None] * self.turn))
         if self.robot.nd == 0:
             return np.tile(self.start, (len(times), 1))
-        reaction = Reaction(self.robot, np.array([self.begin, self.begin + self.step]))
+        reaction = Reaction.along(self.robot, np.array([self.begin, self.begin + self.step]))
         edge = np.zeros(len(times), dtype=int)
         return rotations.multiply(self.start, reaction.rotation(edge, times))
 

@@ -74,7 +74,7 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
     which = np.broadcast_to(np.arange(len(BASES)), shape).ravel()
     base[which == 1] = 0.0
     turns = scales[:, None] * rng.uniform(-1, 1, (edges, 3))
-    reaction = Reaction(robot, corners)
+    reaction = Reaction.along(robot, corners)
     for mode in MODES:
         if mode == "free-flying":
             quats = reaction.rotation(every, times.ravel())
