@@ -198,6 +198,27 @@ class UnprovenPath(PlanningError):  # noqa: N818
         return type(self), (self.layer, self.link, self.obstacle, self.distance, self.divisions)
 
 
+class WorkerDied(PlanningError):  # noqa: N818 - it says what happened
+    """A worker process ended without a result.
+
+    Attributes:
+        worker: its number, from 0.
+        colonies: the colonies that it was to run.
+        status: its exit status, such as `SIGKILL(-9)`.
+    """
+
+    def __init__(self, worker: int, colonies: list[int], status: str) -> None:
+        self.worker, self.colonies, self.status = worker, colonies, status
+        names = ", ".join(map(str, colonies))
+        super().__init__(
+            f"worker {worker} (colonies {names}) died with exit status {status}; "
+            "fewer workers need less memory"
+        )
+
+    def __reduce__(self) -> tuple[type, tuple[int, list[int], str]]:
+        return type(self), (self.worker, self.colonies, self.status)
+
+
 def unknown_name(what: str, value: object, names: Iterable[str]) -> InvalidInput:
     """An `InvalidInput` that lists the known names and suggests the nearest one."""
     known = list(names)

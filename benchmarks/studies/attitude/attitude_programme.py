@@ -14,31 +14,28 @@ import math
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
-from unittest.mock import patch
 
 import numpy as np
 
 import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, publish, table
 from benchmarks.studies.attitude.gates import variation
-from benchmarks.studies.attitude.query_count import count_queries, counting_ground, queries
 from benchmarks.studies.attitude.yaw_programme import REACHABLE, Way, cheapest_way, coarse_to_fine
-from ffsr_plan.search.postures import colony as posture_colony
-from ffsr_plan.search.postures.cost_kernels import Ground
+from ffsr_plan.search.postures.colony import PostureColony
+from ffsr_plan.search.postures.path_proof import prove_path
+from ffsr_plan.search.postures.posture_grid import posture_grid
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
-from ffsr_plan.search.postures.posture_planner import _worked_out
-from ffsr_plan.search.records import Watch
+from ffsr_plan.search.records import SearchMonitor
 from tests.helpers.spatial_robot import spatial_problem
 
 BINS, FINEST = 81, 161
 LADDER = (11, 21, 41, 81, 161)
-ANTS, ANNEALED = fp.MaxMinAntSystem(), fp.MaxMinAntSystem(ants=1, cycles=1)
-FREE_ANTS = fp.MaxMinAntSystem(pheromone=False)
-ENDLESS = fp.MaxMinAntSystem(cycles=1_000_000)
-WALKING = {"_HEATS": (), "_PATIENCE": math.inf}
+ANTS, ANNEALED = fp.PostureAnnealing(), fp.PostureAnnealing(ants=1, cycles=1)
+FREE_ANTS = fp.PostureAnnealing(pheromone=False)
+WALKING = fp.PostureAnnealing(cycles=1_000_000, temperatures=(), patience=1_000_000)
 NAMES = {
     "ants, pheromone, annealing": ANTS,
     "ants without pheromone, annealing": FREE_ANTS,
@@ -59,10 +56,9 @@ A query is a distance from the robot to the obstacles at one node and attitude. 
 shipped" used as many queries as the programme with {BINS} bins: annealing by the number of its
 shifts, ants without annealing by the number of cycles. "Proven at once" counts paths whose edges
 are all proven free as the search returned them, before the planner excludes an edge or corrects the
-path. CPU times are of one thread, without compiling and without the proof; counting the queries
-adds about a fifth to those of the ants and of annealing, nothing to the programme's.
+path. CPU times are of one thread, without compiling and without the proof.
 
-The cost is F in metres, plus {posture_colony._MISSED[1]:.0f} m for each radian beyond half a degree
+The cost is F in metres, plus {ANTS.attitude_weights[1]:.0f} m for each radian beyond half a degree
 by which the goal attitude is missed. It is given relative to the least cost of a programme on the
 same problem. Programmes have no seed: one run for each variation."""
 
@@ -93,20 +89,6 @@ class Run(NamedTuple):
     holds: bool
 
 
-@dataclass(frozen=True)
-class Tally(Watch):
-    """Notes the queries after each cycle and each annealing; ends a search at its budget."""
-
-    ground: Ground = field(kw_only=True)
-    budget: float = math.inf
-    counts: list[int] = field(default_factory=list)
-
-    def over(self) -> bool:
-        """Whether the budget is used up."""
-        self.counts.append(queries(self.ground))
-        return self.counts[-1] >= self.budget
-
-
 def programme(lattice: PostureLattice, solve: Callable[[], Way]) -> Run:
     """Run a dynamic programme; its value must equal the colony's cost of its path."""
     begin = time.process_time()
@@ -114,40 +96,41 @@ def programme(lattice: PostureLattice, solve: Callable[[], Way]) -> Run:
     seconds = time.process_time() - begin
     if way.cost == np.inf:
         return Run(way.cost, way.queries, seconds, False)
-    again = posture_colony.cost_of(counting_ground(lattice), way.path)
+    colony = PostureColony(lattice, posture_grid(lattice), ANTS, np.random.default_rng(0))
+    again = colony.cost(way.path)
     if not math.isclose(again, way.cost, rel_tol=1e-9):
         raise RuntimeError(f"a programme's path costs {again}, not {way.cost}")
-    holds = _worked_out(lattice, way.path).holds
+    holds = prove_path(lattice, way.path).holds
     return Run(way.cost, way.queries, seconds, holds)
 
 
 def colony_run(
-    lattice: PostureLattice,
-    planner: fp.MaxMinAntSystem,
-    seed: int,
-    budget: float = math.inf,
-    **settings: object,
+    lattice: PostureLattice, settings: fp.PostureAnnealing, seed: int, budget: float = math.inf
 ) -> tuple[Run, int]:
-    """Run the colony with some settings of its module changed; the run, and annealing queries."""
-    ground = counting_ground(lattice)
-    watch = Tally(ground=ground, budget=budget)
+    """Run the colony until `budget` queries.
+
+    Returns:
+        The run, and the number of queries of its annealings.
+    """
+    grid = posture_grid(lattice)
+    queries = grid.queries
+    by_ants = [0]
+    monitor = SearchMonitor(
+        on_cycle=lambda _: by_ants.append(int(queries[0])),
+        stop_requested=lambda: bool(queries[0] >= budget),
+    )
     begin = time.process_time()
-    with patch.multiple(posture_colony, _COLD=posture_colony._COLD, **settings):
-        found = posture_colony.search(
-            lattice, ground, planner.ants, planner.cycles, planner.pheromone,
-            np.random.default_rng(seed), watch,
-        )  # fmt: skip
-        rounds = len(posture_colony._HEATS)
-    seconds, asked = time.process_time() - begin, queries(ground)
-    before = [0, *watch.counts][-1 - rounds]
-    holds = _worked_out(lattice, found.path).holds
-    return Run(found.cost, asked, seconds, holds), asked - before
+    colony = PostureColony(lattice, grid, settings, np.random.default_rng(seed))
+    found = colony.search(monitor)
+    seconds, total = time.process_time() - begin, int(queries[0])
+    holds = prove_path(lattice, found.path).holds
+    return Run(found.cost, total, seconds, holds), total - by_ants[-1]
 
 
 def compared(problem: fp.Problem, seeds: int) -> dict[str, list[Run]]:
     """Every search on one problem."""
     lattice = PostureLattice(problem)
-    _ = lattice.turns, lattice.frames, lattice.allowed, lattice.bends  # common to all
+    _ = lattice.step_rotations, lattice.frames, lattice.allowed, lattice.squared_steps  # shared
     runs: dict[str, list[Run]] = {
         f"programme, {bins} bins": [programme(lattice, lambda b=bins: cheapest_way(lattice, b))]
         for bins in (41, BINS, FINEST)
@@ -157,18 +140,19 @@ def compared(problem: fp.Problem, seeds: int) -> dict[str, list[Run]]:
     ]
     budget = runs[f"programme, {BINS} bins"][0].queries
     for seed in range(seeds):
-        for name, planner in NAMES.items():
-            shipped, annealing = colony_run(lattice, planner, seed)
+        for name, settings in NAMES.items():
+            shipped, annealing = colony_run(lattice, settings, seed)
             runs.setdefault(f"{name}, as shipped", []).append(shipped)
             left = max(0.05 * budget, budget - (shipped.queries - annealing))
-            shifts = round(posture_colony._ANNEALING * left / annealing)
-            run, _ = colony_run(lattice, planner, seed, _ANNEALING=shifts)
+            per_layer = settings.shifts_per_layer(problem.reach_attitude)
+            shifts = round(per_layer * left / annealing)
+            run, _ = colony_run(lattice, replace(settings, annealing_shifts=shifts), seed)
             runs.setdefault(name, []).append(run)
         for name, settings in {
             "ants, pheromone, no annealing": WALKING,
-            "ants, pheromone, no shifts at all": {**WALKING, "_SHIFTS": 0},
+            "ants, pheromone, no shifts at all": replace(WALKING, descent_shifts=0),
         }.items():
-            run, _ = colony_run(lattice, ENDLESS, seed, budget, **settings)
+            run, _ = colony_run(lattice, settings, seed, budget)
             runs.setdefault(name, []).append(run)
     return runs
 
@@ -244,12 +228,11 @@ def in_space(every: Iterable[dict[str, list[Run]]]) -> str:
     return (
         "## In space, computed and not run\n\n"
         "The robot of tests/helpers/spatial_robot.py turns by 10 degrees on the spot: "
-        f"{lattice.size} "
-        f"postures of three axes on each of {len(lattice.joint_values)} layers, {nodes} nodes "
-        "between the "
-        f"ends in which no links touch, {steps} steps from each. Rotations by up to "
-        f"r = {math.degrees(REACHABLE):.0f} degrees fill a volume of 8 pi (r - sin r), which is "
-        f"{bins:,.0f} bins of {math.degrees(width):.2f} degrees instead of {BINS}. That makes "
+        f"{lattice.size} postures of three axes on each of {len(lattice.joint_values)} layers, "
+        f"{nodes} nodes between the ends in which no links touch, {steps} steps from each. "
+        f"Rotations by up to r = {math.degrees(REACHABLE):.0f} degrees fill a volume of "
+        f"8 pi (r - sin r), which is {bins:,.0f} bins of {math.degrees(width):.2f} degrees "
+        f"instead of {BINS}. That makes "
         f"{needed:.1e} states and {needed * steps:.1e} steps; to remember where each state came "
         f"from takes {needed * 8 / 1e9:,.0f} GB at eight bytes, and at the planar programme's "
         f"{rate / 1e6:.1f} million states a second it would run for {needed / rate / 3600:.1f} "
@@ -262,15 +245,17 @@ def in_space(every: Iterable[dict[str, list[Run]]]) -> str:
 
 def compile_all() -> None:
     """Compile all kernels and check the counter of queries."""
-    count_queries()
     lattice = PostureLattice(variation("gate", 0))
     cheapest_way(lattice, 3)
     colony_run(lattice, ANNEALED, 0)
-    ground = counting_ground(lattice)
-    straight = np.tile(ground.origin, (len(lattice.joint_values), 1))
-    posture_colony.cost_of(ground, straight)
-    if queries(ground) != len(lattice.joint_values) - 1:
-        raise RuntimeError(f"{queries(ground)} queries counted along a path, not one for each edge")
+    grid = posture_grid(lattice)
+    colony = PostureColony(lattice, grid, ANTS, np.random.default_rng(0))
+    straight = np.tile(grid.origin, (len(lattice.joint_values), 1))
+    before = int(grid.queries[0])
+    colony.cost(straight)
+    counted = int(grid.queries[0]) - before
+    if counted != len(lattice.joint_values) - 1:
+        raise RuntimeError(f"{counted} queries counted along a path, not one for each edge")
 
 
 def main(argv: Sequence[str] | None = None) -> None:

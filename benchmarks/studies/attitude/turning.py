@@ -23,7 +23,6 @@ import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, publish, table
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.search.postures import colony
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from tests.helpers.spatial_robot import spatial_problem
 from tests.helpers.turning_programme import turning_oracle
@@ -67,7 +66,7 @@ def planar(degrees: float) -> fp.Problem:
     return fp.Problem(robot, fp.Scene(), start, goal, lattice=LATTICE, reach_attitude=True)
 
 
-def turn(problem: fp.Problem, seed: int, planner: fp.MaxMinAntSystem | None = None) -> Turn | None:
+def turn(problem: fp.Problem, seed: int, planner: fp.PostureAnnealing | None = None) -> Turn | None:
     """Plan; None if the goal attitude was not reached."""
     try:
         plan = fp.plan(problem, planner, seed)
@@ -160,7 +159,7 @@ def spatial_table(settings: Iterable[tuple[int, int, int, float]], seeds: int) -
 def parts_table(angles: Sequence[int], seeds: int) -> str:
     """Results of the default search, without pheromone, and without ants."""
     oracle = turning_oracle(planar(10), math.radians(0.1))
-    colony = fp.MaxMinAntSystem
+    colony = fp.PostureAnnealing
     planners = {
         "ants, pheromone, annealing": colony(),
         "ants without pheromone, annealing": colony(pheromone=False),
@@ -199,7 +198,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     begin = time.perf_counter()
     turn(planar(10), 0)  # compiles
     given = " ".join(sys.argv[1:] if argv is None else argv)
-    shifts = len(colony._HEATS) * colony._ANNEALING
+    default = fp.PostureAnnealing()
+    shifts = len(default.temperatures) * default.shifts_per_layer(reach_attitude=True)
     parts = [
         "# Turning by arm motion alone",
         f"`python -m benchmarks.studies.attitude.turning {given}".rstrip()

@@ -79,7 +79,7 @@ def measure(
 ) -> dict[tuple[str, str], float]:
     """Mean over the scenes of the least CPU time [s], by planner and kind of time.
 
-    Every search gets a new roadmap: `forget` would keep the prover's bounds.
+    Every search gets a new roadmap; a copy without edge states would keep the prover's bounds.
     """
     problems = [random_problem(seed, DELTA, lattice(divisions, nodes)) for seed in seeds]
     seconds = {}
