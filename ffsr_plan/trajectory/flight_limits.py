@@ -1,4 +1,4 @@
-"""`Limits`: how fast and how hard a plan may be flown, checked once."""
+"""Limits of a flight on velocity, acceleration, jerk, torque and pulses."""
 
 from __future__ import annotations
 
@@ -13,28 +13,40 @@ from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.trajectory.straight_runs import StraightRuns
 
-_MOST = 1e9
-"""Beyond it a flight is so short that rounding decides about thrust and delta-v."""
+_LARGEST_LIMIT = 1e9  # with larger ones thrust and delta-v would be dominated by rounding
 PerJoint = float | Mapping[str, float] | None
-"""One number for all joints, or numbers by joint name, or nothing."""
+"""One limit for all joints, limits by joint name, or None."""
 
 
-class Limits(NamedTuple):
-    """Infinite where there is none. Columns: base origin, turn of the base by wheels, joints."""
+class FlightLimits(NamedTuple):
+    """Limits of a flight, infinite if there is none.
+
+    The columns of the first three are the base origin, the rotation of the base by wheels, and the
+    joints.
+
+    Attributes:
+        velocity: (2 + nd,) [m/s], [rad/s], [rad/s or m/s].
+        acceleration: (2 + nd,) [m/s^2], [rad/s^2], [rad/s^2 or m/s^2].
+        jerk: (2 + nd,) [m/s^3], [rad/s^3], [rad/s^3 or m/s^3].
+        torque: (nd,) [N m or N].
+        velocity_jump: change of the base's velocity at a corner of its path [m/s].
+    """
 
     velocity: Array
-    """(2 + nd,) [m/s], [rad/s], [rad/s or m/s]."""
     acceleration: Array
-    """(2 + nd,) [m/s^2], [rad/s^2], [rad/s^2 or m/s^2]."""
     jerk: Array
-    """(2 + nd,) [m/s^3], [rad/s^3], [rad/s^3 or m/s^3]."""
     torque: Array
-    """(nd,) [N m or N]."""
     velocity_jump: float
-    """Of the base at a corner of its path [m/s]."""
 
     def along(self, runs: StraightRuns) -> tuple[Array, Array, Array]:
-        """(r,) most x', x'' and x''' along each run: the tightest of all limits there."""
+        """The tightest limits on x along each run.
+
+        Args:
+            runs: r straight runs.
+
+        Returns:
+            (r,) each: limits on x', x'' and x'''.
+        """
         rates = runs.rates()
         with np.errstate(divide="ignore"):
             x = [np.min(most / rates, axis=1) for most in self[:3]]
@@ -54,18 +66,39 @@ def read_limits(
     turn_velocity: float | None,
     turn_acceleration: float | None,
     velocity_jump: float,
-) -> Limits:
-    """The limits that a user names; see `Plan.timed`."""
+) -> FlightLimits:
+    """Check the arguments of `Plan.timed` and collect them.
+
+    Args:
+        robot: the robot.
+        joint_velocity: limits on joint velocities [rad/s or m/s]; None for those of the URDF.
+        joint_acceleration: limits on joint accelerations [rad/s^2 or m/s^2].
+        joint_jerk: limits on joint jerks [rad/s^3 or m/s^3].
+        joint_torque: limits on joint torques [N m or N].
+        base_velocity: limit on the velocity of the base origin [m/s].
+        thruster_acceleration: limit on thrust divided by mass [m/s^2].
+        thruster_jerk: limit on the jerk of the base origin [m/s^3].
+        turn_velocity: limit on the angular velocity of a base that wheels rotate [rad/s].
+        turn_acceleration: limit on its angular acceleration [rad/s^2].
+        velocity_jump: largest change of the base's velocity at a corner [m/s].
+
+    Returns:
+        The limits; infinite for None.
+
+    Raises:
+        InvalidInput: a limit that is not a positive number, an unknown joint, or a velocity jump
+            together with a limit on jerk.
+    """
     jump = number("velocity_jump", velocity_jump, at_least=0.0)
     none = np.full(robot.nd, np.inf)
     stated = np.array(robot.model.upperVelocityLimit[6:])
     jerks = _per_joint(robot, "joint_jerk", joint_jerk, none)
-    shake = _one("thruster_jerk", thruster_jerk)
-    if jump > 0.0 and np.any(np.isfinite([shake, *jerks])):
+    base_jerk = _one("thruster_jerk", thruster_jerk)
+    if jump > 0.0 and np.any(np.isfinite([base_jerk, *jerks])):
         raise InvalidInput(
-            "velocity_jump", jump, "0 where a jerk is limited: a jump is a jerk without limit"
+            "velocity_jump", jump, "0 if a jerk is limited: a jump has an infinite jerk"
         )
-    return Limits(
+    return FlightLimits(
         _row(
             _one("base_velocity", base_velocity),
             _one("turn_velocity", turn_velocity),
@@ -76,21 +109,30 @@ def read_limits(
             _one("turn_acceleration", turn_acceleration),
             _per_joint(robot, "joint_acceleration", joint_acceleration, none),
         ),
-        _row(shake, np.inf, jerks),
+        _row(base_jerk, np.inf, jerks),
         _per_joint(robot, "joint_torque", joint_torque, none),
         jump,
     )
 
 
-def check_limits(limits: Limits, runs: StraightRuns, robot: SpaceRobot, floats: bool) -> None:
-    """Raise `InvalidInput` where something moves whose acceleration is not limited.
+def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, floats: bool) -> None:
+    """Check that everything that moves has a limit on its acceleration.
 
-    There is no default that would suit a robot of one kilogram and one of ten tonnes.
+    There is no default that suits both a robot of one kilogram and one of ten tonnes.
+
+    Args:
+        limits: the limits.
+        runs: the straight runs of the motion.
+        robot: the robot.
+        floats: whether the base has no thrusters.
+
+    Raises:
+        InvalidInput: naming the missing limit.
     """
     moves = np.max(runs.rates(), axis=0) > 0.0
     needed = {"thruster_acceleration": not floats, "turn_acceleration": bool(moves[1])}
-    for k, (name, due) in enumerate(needed.items()):
-        if due and not np.isfinite(limits.acceleration[k]):
+    for k, (name, is_needed) in enumerate(needed.items()):
+        if is_needed and not np.isfinite(limits.acceleration[k]):
             raise InvalidInput(name, None, "a finite number greater than 0")
     for k, name in enumerate(robot.joint_names, start=2):
         if moves[k] and not np.isfinite(limits.acceleration[k]):
@@ -100,7 +142,7 @@ def check_limits(limits: Limits, runs: StraightRuns, robot: SpaceRobot, floats: 
         if moves[k] and limits.velocity[k] <= 0.0:
             raise InvalidInput(
                 f"joint_velocity, joint {name}", 0.0,
-                "greater than 0; the URDF says 0, so it has to be given",
+                "greater than 0; the URDF's limit is 0, so another one has to be given",
             )  # fmt: skip
 
 
@@ -109,19 +151,19 @@ def _row(base: float, turn: float, joints: Array) -> Array:
 
 
 def _one(what: str, value: float | None) -> float:
-    return np.inf if value is None else number(what, value, above=0.0, at_most=_MOST)
+    return np.inf if value is None else number(what, value, above=0.0, at_most=_LARGEST_LIMIT)
 
 
 def _per_joint(robot: SpaceRobot, what: str, value: PerJoint, default: Array) -> Array:
     if value is None:
         return default
     if not isinstance(value, Mapping):
-        return np.full(robot.nd, number(what, value, above=0.0, at_most=_MOST))
+        return np.full(robot.nd, number(what, value, above=0.0, at_most=_LARGEST_LIMIT))
     values = np.array(default)
     for name, each in value.items():
         if name not in robot.joint_names:
             raise unknown_name(what, name, robot.joint_names)
         values[robot.joint_names.index(name)] = number(
-            f"{what}.{name}", each, above=0.0, at_most=_MOST
+            f"{what}.{name}", each, above=0.0, at_most=_LARGEST_LIMIT
         )
     return values
