@@ -163,7 +163,7 @@ def test_a_goal_that_the_arms_cannot_turn_to_is_refused_with_what_is_missing():
 
 @pytest.mark.parametrize("planner", [fp.LatticeOptimum(), fp.AntSystem()])
 def test_planners_that_need_a_cost_of_nodes_alone_refuse_and_say_why(planner):
-    with pytest.raises(fp.InvalidInput, match=r"max-min-ant-system.*depends on the way"):
+    with pytest.raises(fp.InvalidInput, match=r"posture-annealing.*depends on the path"):
         fp.plan(turning(10), planner)
 
 
