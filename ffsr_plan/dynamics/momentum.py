@@ -35,7 +35,7 @@ def connection(robot: SpaceRobot, q: ArrayLike) -> Array:
         InvalidInput: a configuration that the robot does not have.
     """
     q = robot.check_configuration("q", q)
-    return np.asarray(connections(robot, robot.joint_values(q)[None])[0])
+    return connections(robot, robot.joint_values(q)[None])[0]
 
 
 def connections(robot: SpaceRobot, joint_values: Array) -> Array:
@@ -89,7 +89,7 @@ def centers_of_mass(robot: SpaceRobot, joint_values: Array) -> Array:
     levers = np.array([body.lever for body in bodies])
     poses = robot.tree.poses(joint_values)
     centers = poses.origins + turned(poses.rotations, levers)
-    return np.asarray(np.einsum("b,kbi->ki", masses / masses.sum(), centers))
+    return np.einsum("b,kbi->ki", masses / masses.sum(), centers)
 
 
 def attitude_rate_map(robot: SpaceRobot, q: ArrayLike) -> Array:
@@ -141,4 +141,4 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
         model, data, q, model.getFrameId(frame), pin.LOCAL_WORLD_ALIGNED
     )
     base_rate = np.linalg.solve(momentum_map[:, :6], momentum_map[:, 6:])
-    return np.asarray(jacobian[:, 6:] - jacobian[:, :6] @ base_rate)
+    return jacobian[:, 6:] - jacobian[:, :6] @ base_rate

@@ -140,10 +140,8 @@ def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, fl
                 f"joint_acceleration, joint {name}", None, "a finite number greater than 0"
             )
         if moves[k] and limits.velocity[k] <= 0.0:
-            raise InvalidInput(
-                f"joint_velocity, joint {name}", 0.0,
-                "greater than 0; the URDF's limit is 0, so another one has to be given",
-            )  # fmt: skip
+            allowed = "greater than 0; the URDF's limit is 0, so another one has to be given"
+            raise InvalidInput(f"joint_velocity, joint {name}", 0.0, allowed)
 
 
 def _row(base: float, turn: float, joints: Array) -> Array:

@@ -90,11 +90,9 @@ def straight_runs(motion: Motion) -> StraightRuns:
         The runs; none if nothing moves.
     """
     turn = np.zeros(3) if motion.mode.attitude_reacts else motion.turn
-    steps = np.hstack([
-        motion.base_steps(),
-        np.broadcast_to(turn, (motion.edges, 3)),
-        np.diff(motion.joint_values, axis=0),
-    ])  # fmt: skip
+    rotations = np.broadcast_to(turn, (motion.edges, 3))
+    joint_steps = np.diff(motion.joint_values, axis=0)
+    steps = np.hstack([motion.base_steps(), rotations, joint_steps])
     steps[np.abs(steps) <= _SMALLEST_STEP] = 0.0
     scale = np.linalg.norm(steps[:, 3:], axis=1)
     scale = np.where(scale > 0.0, scale, np.linalg.norm(steps[:, :3], axis=1))
@@ -108,6 +106,10 @@ def straight_runs(motion: Motion) -> StraightRuns:
     ends = [*(k - 1 for k in starts[1:]), len(moving) - 1] if starts else []
     along = directions[starts]
     return StraightRuns(
-        np.concatenate([[0.0], np.cumsum(scale)]), moving[starts], moving[ends],
-        along[:, :3], along[:, 3:6], along[:, 6:],
-    )  # fmt: skip
+        corners=np.concatenate([[0.0], np.cumsum(scale)]),
+        first=moving[starts],
+        last=moving[ends],
+        base=along[:, :3],
+        turn=along[:, 3:6],
+        joints=along[:, 6:],
+    )

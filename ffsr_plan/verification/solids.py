@@ -113,8 +113,8 @@ def sphere_distance(shape: Shape, placed: Array, centers: Array, radii: Array) -
         depth = _beyond_faces(shape, flat)
         outside = depth > 0.0
         depth[outside] = _from_triangles(shape.triangles, flat[outside])
-        return np.asarray(depth.reshape(local.shape[:2]) - shape.swell - radii)
-    return np.asarray(_simple_distance(shape, local) - shape.swell - radii)
+        return depth.reshape(local.shape[:2]) - shape.swell - radii
+    return _simple_distance(shape, local) - shape.swell - radii
 
 
 def least_sphere_distance(shape: Shape, placed: Array, centers: Array, radii: Array) -> float:
@@ -149,7 +149,7 @@ def least_sphere_distance(shape: Shape, placed: Array, centers: Array, radii: Ar
 def _local(placed: Array, centers: Array) -> Array:
     """(N, K, 3) points in the shape's frame."""
     away = centers[None] - placed[:, None, :3, 3]
-    return np.asarray(np.einsum("nji,nkj->nki", placed[:, :3, :3], away))
+    return np.einsum("nji,nkj->nki", placed[:, :3, :3], away)
 
 
 def _simple_distance(shape: Shape, local: Array) -> Array:
@@ -157,7 +157,7 @@ def _simple_distance(shape: Shape, local: Array) -> Array:
     if shape.half is not None:
         beyond = np.abs(local) - shape.half
         outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
-        return np.asarray(outside + np.minimum(np.max(beyond, axis=-1), 0.0))
+        return outside + np.minimum(np.max(beyond, axis=-1), 0.0)
     return _from_segment(shape.points[0], shape.points[-1], local)
 
 
@@ -174,7 +174,7 @@ def _from_segment(a: Array, b: Array, points: Array) -> Array:
     square = np.sum(along * along, axis=-1)
     share = np.sum((points - a) * along, axis=-1) / np.where(square > 0.0, square, 1.0)
     nearest = a + np.clip(share, 0.0, 1.0)[..., None] * along
-    return np.asarray(np.linalg.norm(points - nearest, axis=-1))
+    return np.linalg.norm(points - nearest, axis=-1)
 
 
 def _from_triangles(triangles: Array, points: Array) -> Array:
@@ -197,7 +197,7 @@ def _nearest_triangle(triangles: Array, points: Array) -> Array:
         inward = np.cross(normal, end - begin)
         over &= points @ inward.T - np.sum(begin * inward, axis=1) >= 0.0
     height = np.abs(points @ normal.T - np.sum(a * normal, axis=1)) / np.where(size > 0, size, 1.0)
-    return np.asarray(np.min(np.where(over, np.minimum(least, height), least), axis=1))
+    return np.min(np.where(over, np.minimum(least, height), least), axis=1)
 
 
 def covers_points(shape: Shape, points: Array) -> bool:

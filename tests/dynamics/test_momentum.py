@@ -54,7 +54,7 @@ def test_angular_momentum_vanishes_whatever_the_thrusters_do(seed):
 
 
 def angular_momentum(robot, q, v):
-    """About the centre of mass, body by body, with the sum of the terms' sizes."""
+    """Angular momentum about the centre of mass by bodies, and the sum of its terms' sizes."""
     model, data = robot.model, robot.model.createData()
     pin.forwardKinematics(model, data, q, v)
     com = pin.centerOfMass(model, data, q, v)

@@ -20,7 +20,7 @@ def total(robot, corners):
 
 
 def by_many_small_steps(robot, begin, end, steps):
-    """The same rotation by the midpoint rule on the group: second order, nothing shared."""
+    """The same rotation by the midpoint rule on the group: second order, other code."""
     theta = begin + (np.arange(steps)[:, None] + 0.5) / steps * (end - begin)
     rotation = IDENTITY
     for rate in connections(robot, theta) @ (end - begin):
@@ -83,7 +83,7 @@ def test_the_integrator_converges_to_many_small_steps(seed):
 @given(seeds)
 @settings(max_examples=25)
 def test_its_error_stays_below_1e_9_rad(seed):
-    """One long segment against a hundred short ones, and against its own estimate."""
+    """One long segment is compared with a hundred short ones, and with its own estimate."""
     robot = random_robot(seed)
     begin, end = path(robot, seed)
     whole = Reaction.along(robot, np.array([begin, end]))
@@ -113,7 +113,7 @@ def test_the_rotation_does_not_depend_on_the_timing(seed):
 
 
 def test_a_closed_joint_loop_turns_the_base(robot):
-    """Holonomy: this is how a satellite turns with its arms."""
+    """Holonomy: closed loops of the arms rotate a satellite."""
     a, b = np.zeros(6), np.zeros(6)
     a[0], b[1] = 1.2, 1.2
     turned = total(robot, [0 * a, a, a + b, b, 0 * a])

@@ -1,4 +1,4 @@
-"""Attitude-held: the angular momentum that the wheels must store."""
+"""Angular momentum of wheels that hold the attitude."""
 
 import numpy as np
 import pinocchio as pin
@@ -36,7 +36,7 @@ def held_motion(seed, edges=5):
 
 
 def robots_momentum(motion, s, step=1e-4):
-    """(3,) of base and arms per unit of s, world axes, from differences of the bodies' poses."""
+    """(3,) momentum of base and arms per unit of s, world axes, from finite differences."""
     model, data = motion.robot.model, motion.robot.model.createData()
     parameters = np.array([s - step, s, s + step]) * motion.edges
     edge = np.full(3, int(s * motion.edges))
@@ -111,7 +111,7 @@ def test_nothing_is_stored_without_motion_of_arms_or_attitude():
 @given(seeds)
 @settings(max_examples=20)
 def test_turning_the_frame_of_the_whole_motion_turns_the_vector(seed):
-    """In world axes; in base axes nothing changes. Carrying it elsewhere does nothing at all."""
+    """In world axes; in base axes nothing changes. A translation changes neither."""
     motion, rng = held_motion(seed), np.random.default_rng(seed)
     turn = rotations.from_angles(rng.uniform(-1.5, 1.5, 3))
     rotation, shift = rotations.matrix(turn), rng.normal(size=3)
@@ -136,7 +136,7 @@ def test_a_turn_without_arms_stores_inertia_times_rate():
 
 
 def test_one_rotating_arm_stores_its_reduced_inertia_times_rate():
-    """Closed form: two bodies about their common centre of mass, the base not turning."""
+    """Closed form: two bodies about their common centre of mass, the base at rest."""
     robot = robot_from_urdf(
         urdf(
             link("base", inertial(6.0, (1.0, 1.0, 1.0))),

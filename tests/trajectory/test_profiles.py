@@ -26,7 +26,7 @@ def end_of(phases, speed=0.0):
 
 @given(sizes, sizes, sizes)
 def test_rest_to_rest_uses_full_acceleration_speed_and_braking(length, top, push):
-    """Bang-bang where the speed is not reached, a trapezoid where it is."""
+    """Bang-bang if the speed limit is not reached, a trapezoid if it is."""
     phases = trapezoid(length, 0.0, 0.0, top, push)
     reached = top**2 < push * length
     best = length / top + top / push if reached else 2.0 * np.sqrt(length / push)

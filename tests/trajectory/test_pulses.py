@@ -36,7 +36,7 @@ def test_a_pulse_passes_a_corner_at_the_largest_possible_speed():
 
 @pytest.mark.parametrize("degrees", [3.0, 40.0, 90.0, 170.0])
 def test_a_finite_pulse_cuts_the_corner_by_the_stated_distance(degrees):
-    """Evenly over its length: the path's velocity averaged over as long, flown at a steady pace."""
+    """A uniform pulse averages the path's velocity over its duration, at a constant pace."""
     flight = bend(degrees, velocity_jump=0.05)
     (pulse,), (corner,) = flight.pulses, flight.pulse_times
     (after,) = flight.at([corner]).base_velocity
@@ -54,7 +54,7 @@ def test_a_finite_pulse_cuts_the_corner_by_the_stated_distance(degrees):
 
 @pytest.mark.parametrize("second", [5.0, -5.0])
 def test_pulses_that_overlap_cut_no_deeper_than_stated(second, point):
-    """Two corners so near that the first pulse has not ended where the second begins."""
+    """Two corners so close that the second pulse begins before the first one ends."""
     turns = np.radians([0.0, 5.0, 5.0 + second])
     legs = np.array([10.0, 0.2, 10.0])[:, None] * [(np.cos(a), np.sin(a), 0.0) for a in turns]
     way = np.vstack([np.zeros(3), np.cumsum(legs, axis=0)])

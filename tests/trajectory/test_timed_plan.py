@@ -30,7 +30,7 @@ def mass(robot):
 
 
 def centers(robot, q):
-    """(N, 3) of mass, world [m]."""
+    """(N, 3) centres of mass, world axes [m]."""
     data = robot.model.createData()
     return np.array([pin.centerOfMass(robot.model, data, each) for each in q])
 
