@@ -42,6 +42,10 @@ class InternalError(FfsrPlanError):
         super().__init__(f"internal error: {reason}; please report it")
 
 
+class IntegrationError(FfsrPlanError):
+    """A numerical integration did not converge."""
+
+
 class PlanningError(FfsrPlanError):
     """The input is well formed, but no plan exists or none was found."""
 

@@ -14,7 +14,7 @@ from ffsr_plan.core.formatting import proven
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.trajectory.csv_tables import path_table, write_csv
-from ffsr_plan.trajectory.limits import PerJoint, read_limits
+from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
 from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
 
 if TYPE_CHECKING:

@@ -42,14 +42,12 @@ def corrected(
     if held is not None:
         free[held[1:-1]] = False
     for _ in range(_ITERATIONS):
-        increments = Reaction(robot, path).increments
-        chain = [start]
-        for increment in increments:
-            chain.append(rotations.multiply(chain[-1], increment))
-        missed = rotations.log(rotations.multiply(rotations.inverse(chain[-1]), goal))
+        reaction = Reaction.along(robot, path)
+        reached = reaction.attitudes(start)[-1]
+        missed = rotations.log(rotations.multiply(rotations.inverse(reached), goal))
         if np.linalg.norm(missed) < _TOLERANCE:
             return path
-        slope = _slopes(robot, path, directions, increments)
+        slope = _slopes(robot, path, directions, reaction.increments)
         inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, missed, free)
         if inner is None:
             return None
@@ -84,8 +82,8 @@ def _slopes(robot: SpaceRobot, path: Array, directions: Array, increments: Array
     corners = np.repeat(np.arange(1, m), axes)
     moved = path[1:-1, None] + _DIFFERENCE * directions[1:-1]
     moved = moved.reshape(-1, path.shape[1])
-    before = Reaction.of_segments(robot, path[corners - 1], moved - path[corners - 1]).increments
-    behind = Reaction.of_segments(robot, moved, path[corners + 1] - moved).increments
+    before = Reaction(robot, path[corners - 1], moved - path[corners - 1]).increments
+    behind = Reaction(robot, moved, path[corners + 1] - moved).increments
     rest = [rotations.IDENTITY]  # from corner k + 1 to the end, backwards
     for increment in increments[:0:-1]:
         rest.append(rotations.multiply(increment, rest[-1]))

@@ -107,7 +107,7 @@ class PostureLattice:
             steps = self.joint_values[i + 1, on] - begin
             words = f"the base's reaction to {len(steps)} joint steps, before the search"
             with said_after(5.0, words):
-                turned = Reaction.of_segments(self.problem.robot, begin, steps).increments
+                turned = Reaction(self.problem.robot, begin, steps).increments
             result[i, p, step] = turned
             if self.alike:
                 result[i, on, k - 1 - step] = rotations.inverse(turned)
