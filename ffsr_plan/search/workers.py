@@ -18,31 +18,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.errors import FfsrPlanError, PlanningError
+from ffsr_plan.core.errors import FfsrPlanError, WorkerDied
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import Planner, Search, Watch
-
-
-class WorkerDied(PlanningError):  # noqa: N818 - it says what happened
-    """A worker process ended without an outcome.
-
-    Attributes:
-        worker: its number, from 0.
-        colonies: the colonies that it was to run.
-        status: its exit status; negative for a signal.
-    """
-
-    def __init__(self, worker: int, colonies: list[int], status: int) -> None:
-        self.worker, self.colonies, self.status = worker, colonies, status
-        names = ", ".join(map(str, colonies))
-        super().__init__(
-            f"worker {worker} (colonies {names}) died with exit status {status}; "
-            "fewer workers need less memory"
-        )
-
-    def __reduce__(self) -> tuple[type, tuple[int, list[int], int]]:
-        return type(self), (self.worker, self.colonies, self.status)
 
 
 class Outcome(NamedTuple):
