@@ -31,7 +31,8 @@ from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.planning.plan import Plan
 from ffsr_plan.planning.planner import plan
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
-from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
+from ffsr_plan.problem.lattice_settings import Axis, Lattice
+from ffsr_plan.problem.posture_axes import PostureAxis
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.single_edge import EdgeProof, certify_edge
 from ffsr_plan.robots.robot import SpaceRobot, load_robot, robot_names
@@ -48,7 +49,7 @@ from ffsr_plan.trajectory.timed_plan import TimedPlan
 
 if TYPE_CHECKING:
     from ffsr_plan.display.live_view import LiveView
-    from ffsr_plan.scenario_files.scenario import Scenario, load_scenario, read_scenario
+    from ffsr_plan.scenario_files.scenario import Scenario, load_scenario
 
 __version__ = "0.1.0"
 __all__ = [
@@ -93,7 +94,6 @@ __all__ = [
     "load_scenario",
     "momentum",
     "plan",
-    "read_scenario",
     "refine",
     "robot_names",
     "robot_summaries",
@@ -103,7 +103,6 @@ _LAZY = {  # these need pydantic, or a web server
     "LiveView": "display.live_view",
     "Scenario": "scenario_files.scenario",
     "load_scenario": "scenario_files.scenario",
-    "read_scenario": "scenario_files.scenario",
 }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -43,17 +44,17 @@ def plan_and_report(source: str, options: Options, target: Path | None, check: b
     """Plan a scenario, write and print the result, re-check it."""
     from ffsr_plan.core.checks import number, one_of, whole_number
     from ffsr_plan.planning.planner import PLANNERS
-    from ffsr_plan.scenario_files.scenario import read_scenario
+    from ffsr_plan.scenario_files.scenario import Scenario
 
     duration = number("--duration", options.duration, above=0.0)
-    scenario = read_scenario(source)
+    scenario = Scenario.load(source)
     if options.planner is not None:
         settings = PLANNERS[one_of("--planner", options.planner, list(PLANNERS))]()
-        scenario = scenario._replace(planner=settings)
+        scenario = replace(scenario, planner=settings)
     if options.seed is not None:
-        scenario = scenario._replace(seed=whole_number("--seed", options.seed, at_least=0))
+        scenario = replace(scenario, seed=whole_number("--seed", options.seed, at_least=0))
     if options.refine is not None:
-        scenario = scenario._replace(refine=options.refine)
+        scenario = replace(scenario, refine=options.refine)
     found = planned(scenario, options) if options.watched is None else shown(scenario, options)
     if target is not None:
         write_results(found, scenario.title, target)

@@ -19,14 +19,14 @@ from ffsr_plan.core.text_files import write_whole
 from ffsr_plan.lattice.roadmap import Certificate
 from ffsr_plan.planning.plan import Plan
 from ffsr_plan.planning.planner import PLANNERS
-from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
+from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import Containers
 from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.records import History, Trails
 
-FORMAT = "ffsr-plan/2"
+FORMAT = "ffsr-plan/3"
 _PLAIN = (
     "mode", "delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight",
     "tolerance", "reach_attitude",
@@ -134,8 +134,6 @@ def from_dict(data: dict[str, Any]) -> Plan:
     """The inverse of `to_dict`."""
     given = data["problem"]
     settings = dict(data["planner"])
-    lattice = given["lattice"]
-    axes = {k: Axis(**lattice[k]) for k in ("lateral", "normal") if lattice[k] is not None}
     problem = Problem(
         _robot_from_dict(given["robot"]),
         Scene(
@@ -145,12 +143,7 @@ def from_dict(data: dict[str, Any]) -> Plan:
         ),
         start=given["start"],
         goal=given["goal"],
-        lattice=Lattice(
-            divisions=lattice["divisions"],
-            lateral=axes.get("lateral"),
-            normal=axes.get("normal"),
-            postures=[_posture_axis(entry) for entry in lattice["postures"]],
-        ),
+        lattice=Lattice(**given["lattice"]),
         **{name: given[name] for name in _PLAIN},
     )
     history: dict[str, Any] = {
@@ -183,12 +176,6 @@ def from_dict(data: dict[str, Any]) -> Plan:
         interrupted=data["interrupted"],
         seconds=data["seconds"],
     )
-
-
-def _posture_axis(entry: dict[str, Any]) -> PostureAxis:
-    if entry["posture"]:
-        return PostureAxis.towards(entry["posture"], entry["levels"])
-    return PostureAxis(dict(entry["joints"]), entry["half_count"], entry["spacing"])
 
 
 def write(plan: Plan, path: Path) -> None:

@@ -7,24 +7,26 @@ them, and addresses of meshes hold on one machine only.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import cast
+from typing import Annotated, Any, cast
 from xml.etree import ElementTree
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ffsr_plan.core.checks import finite_array, number, one_of
+from ffsr_plan.core.checks import number, one_of
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.rules import NamedNumbers, Numbers, Rule, Text, Vector
+from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.meshes.box_cover import boxes_around
 from ffsr_plan.meshes.hull_reduction import beyond
 from ffsr_plan.meshes.mesh_files import find, hull, surface
 from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
+from ffsr_plan.robots.urdf_validation import LARGEST
 from ffsr_plan.satellites.arms import Arm, load_arm
-from ffsr_plan.satellites.bus import Bus, box_shape, elements, fixed_joint, place, text
+from ffsr_plan.satellites.bus import Bus, box_shape, elements, fixed_joint, text
 
 SHAPES = ("boxes", "meshes")
 _NO_INERTIA = (
@@ -33,45 +35,48 @@ _NO_INERTIA = (
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class PathOrName(Rule):
+    """A path, or a name; for an SRDF also None."""
+
+    meaning: str
+    optional: bool = False
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
+        """See `Rule.check`."""
+        if isinstance(value, (str, Path)) or (self.optional and value is None):
+            return value
+        raise InvalidInput(what, value, self.meaning)
+
+
+@settings(eq=False, of="a mount")
 class Mount:
     """An arm and its place on the bus.
 
-    Args:
+    Attributes:
         arm: the name of an arm (see `arm_names`), or a path to a `.urdf` file.
         position: (3,) origin of the arm's root link in the bus frame [m].
         attitude: (3,) ZYX angles (alpha, beta, gamma) of that link in the bus frame [rad].
-        prefix: goes before the names of the arm's links and joints.
+        prefix: put before the names of the arm's links and joints.
         locked: joints of the arm that are fixed, by the arm's own names, at a value [rad, or m
-            where prismatic]; the planner does not move them. A joint that mimics another one can
-            only be fixed, by locking the other.
-        srdf: path to an SRDF of the arm, by whose `<disable_collisions>` links may touch. An arm of
-            a name brings its own, if example-robot-data has one.
+            where prismatic]; the planner does not move them. If other joints mimic a joint, lock
+            that joint: the others are fixed with it.
+        srdf: path to an SRDF of the arm, by whose `<disable_collisions>` links may touch. An arm
+            given by its name has its own, if example-robot-data has one.
 
     Raises:
-        InvalidInput: what is not finite, or of another kind.
+        InvalidInput: a value that is not finite, or of another type.
     """
 
-    arm: str | Path
-    position: ArrayLike = (0.0, 0.0, 0.0)
-    attitude: ArrayLike = (0.0, 0.0, 0.0)
-    prefix: str = ""
-    locked: Mapping[str, float] = field(default_factory=dict)
-    srdf: str | Path | None = None
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.arm, (str, Path)):
-            raise InvalidInput("arm", self.arm, "a name or a path")
-        if not isinstance(self.prefix, str):
-            raise InvalidInput("prefix", self.prefix, "a text, such as 'left_'")
-        if not isinstance(self.locked, Mapping):
-            raise InvalidInput("locked", self.locked, "a mapping from joint names to values")
-        if self.srdf is not None and not isinstance(self.srdf, (str, Path)):
-            raise InvalidInput("srdf", self.srdf, "a path")
-        fill = object.__setattr__
-        fill(self, "position", place("position of a mount", self.position))
-        fill(self, "attitude", finite_array("attitude of a mount", self.attitude, (3,)))
-        fill(self, "locked", dict(self.locked))
+    arm: Annotated[str | Path, PathOrName("a name or a path")]
+    position: Annotated[Vector, Numbers(3, at_most=LARGEST)] = setting(default=(0.0, 0.0, 0.0))
+    attitude: Annotated[Vector, Numbers(3)] = setting(default=(0.0, 0.0, 0.0))
+    prefix: Annotated[str, Text("a text, such as 'left_'")] = ""
+    locked: Annotated[
+        Given[dict[str, float], Mapping[str, float]],
+        NamedNumbers("a mapping from joint names to values"),
+    ] = setting(default_factory=dict)
+    srdf: Annotated[str | Path | None, PathOrName("a path", optional=True)] = None
 
 
 def compose(

@@ -20,7 +20,7 @@ from tests.helpers.builders import random_configuration, random_robot, random_sc
 @pytest.fixture(scope="module")
 def experiment():
     """The paper's experiment, 20 seeds for each delta."""
-    scenarios = [fp.read_scenario(name) for name in ("fig2a", "fig2b")]
+    scenarios = [fp.Scenario.load(name) for name in ("fig2a", "fig2b")]
     return {
         s.problem.delta: [fp.plan(s.problem, s.planner, seed, refine=False) for seed in range(20)]
         for s in scenarios
@@ -106,7 +106,7 @@ def test_the_base_turns_although_nobody_turned_it(fig2a_plan):
 
 def test_the_objective_recomputed_from_scratch_is_the_plans(fig2a_plan):
     problem = fig2a_plan.problem
-    along = problem.start[:3] + np.arange(41)[:, None] / 40 * problem.travel
+    along = problem.start[:3] + np.arange(41)[:, None] / 40 * problem.base_displacement
     offsets = fig2a_plan.configurations[:, :3] - along
     assert path_length(problem, offsets) == pytest.approx(fig2a_plan.length, rel=1e-12)
     nearness = 6.0 * np.sum(0.1 / fig2a_plan.clearances[1:-1])
@@ -246,7 +246,7 @@ def test_an_edited_plan_file_is_refused(fig2a_plan, tmp_path, key):
 def test_a_file_that_is_no_plan_is_refused(tmp_path):
     for text in ("[1, 2]", "{}", '{"format": "ffsr-plan/99"}'):
         (tmp_path / "plan.json").write_text(text)
-        with pytest.raises(fp.InvalidInput, match="format 'ffsr-plan/2'"):
+        with pytest.raises(fp.InvalidInput, match="format 'ffsr-plan/3'"):
             fp.Plan.load(tmp_path / "plan.json")
     with pytest.raises(fp.InvalidInput, match="FileNotFoundError"):
         fp.Plan.load(tmp_path / "missing.json")
@@ -328,7 +328,7 @@ def test_nodes_lie_within_the_lattice(robot, tmp_path, lattice):
 
 
 @pytest.mark.parametrize(
-    "text", ['{"format": "ffsr-plan/2", "a": NaN}', "[" * 100_000, '{"a": ' + "1" * 5001 + "}"]
+    "text", ['{"format": "ffsr-plan/3", "a": NaN}', "[" * 100_000, '{"a": ' + "1" * 5001 + "}"]
 )
 def test_hostile_json_is_refused(tmp_path, text):
     (tmp_path / "plan.json").write_text(text)

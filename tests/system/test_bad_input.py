@@ -249,7 +249,7 @@ def test_a_lattice_too_large_for_the_memory_is_refused_with_its_size(robot):
 
 
 def test_things_of_another_kind_are_refused_by_name(robot):
-    scenario = fp.read_scenario("fig2a")
+    scenario = fp.Scenario.load("fig2a")
     cases = {
         "problem": [lambda: fp.plan(scenario), lambda: fp.plan(None), lambda: fp.plan("fig2a")],
         "joints": [lambda: robot.configuration(joints=[1, 2])],
