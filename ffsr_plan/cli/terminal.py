@@ -28,7 +28,7 @@ def errors_on_stderr() -> Iterator[None]:
     try:
         yield
     except FfsrPlanError as error:
-        err_console.print("ffsr-plan: ", error, sep="", style="red", markup=False)
+        err_console.print(f"ffsr-plan: {error}", style="red", markup=False)
         raise typer.Exit(1 if isinstance(error, PlanningError) else 2) from None
     except KeyboardInterrupt:
         err_console.print("ffsr-plan: interrupted", style="red")
