@@ -10,9 +10,9 @@ from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.rules import Truth, WholeNumber
 from ffsr_plan.core.settings import from_mapping, part_of, settings
-from ffsr_plan.planning.planner import PLANNERS
-from ffsr_plan.search.ants.max_min import MaxMinAntSystem
-from ffsr_plan.search.records import Planner
+from ffsr_plan.plans.planners import PLANNERS, Planner, default_planner
+from ffsr_plan.problem.lattice_settings import Lattice
+from ffsr_plan.problem.posture_axes import PostureTarget
 
 
 @settings
@@ -36,7 +36,7 @@ class PlannerTable:
         return self.kind(**{name: getattr(self, name) for name in _names(self.kind)})
 
 
-def _names(kind: type[Planner]) -> list[str]:
+def _names(kind: type[Planner | PlannerTable]) -> list[str]:
     return [each.name for each in fields(kind)]
 
 
@@ -52,15 +52,18 @@ PLANNER_TABLES: dict[str, type[PlannerTable]] = {
     for name, kind in PLANNERS.items()
 }
 """Tables by the planner's name."""
-UNNAMED = MaxMinAntSystem.name
-"""The planner whose settings may be given without its name."""
+_DEFAULTS = [
+    default_planner(lattice).name
+    for lattice in (Lattice(), Lattice(postures=[PostureTarget("any", 1)]))
+]
+"""Planners whose settings may be given without a name, on the lattices whose default they are."""
 
 
 class ByPlannerName:
     """The annotation of a field for one of `PLANNER_TABLES`, told apart by the key `name`."""
 
-    def table(self, value: object) -> object:
-        """The table of a mapping.
+    def table(self, value: object, lattice: Lattice) -> object:
+        """The table of a mapping; without a name, settings are those of the lattice's default.
 
         Raises:
             InvalidInput: an unknown planner, or a setting that it does not have.
@@ -70,19 +73,23 @@ class ByPlannerName:
         if not isinstance(value, Mapping):
             raise InvalidInput("", value, "a table")
         given = dict(value)
+        kind = PLANNER_TABLES[default_planner(lattice).name]
         if "name" in given:
-            name = one_of(".name", given.pop("name"), list(PLANNER_TABLES))
-            return from_mapping(PLANNER_TABLES[name], given)
-        settings_given = set(given) & set(_names(PLANNERS[UNNAMED]))
-        return from_mapping(PLANNER_TABLES[UNNAMED] if settings_given else PlannerTable, given)
+            kind = PLANNER_TABLES[one_of(".name", given.pop("name"), list(PLANNER_TABLES))]
+        elif set(given) <= set(_names(PlannerTable)):
+            kind = PlannerTable
+        return from_mapping(kind, given)
 
     def __get_pydantic_core_schema__(self, source: object, handler: Callable[[Any], Any]) -> Any:  # noqa: ANN401
         from pydantic_core import core_schema
 
+        def made(value: object, info: Any) -> object:  # noqa: ANN401 - pydantic's
+            return self.table(value, info.data.get("lattice", Lattice()))
+
         kinds = [handler.generate_schema(kind) for kind in PLANNER_TABLES.values()]  # type: ignore[attr-defined]
         kinds.append(handler(PlannerTable))
-        return core_schema.no_info_before_validator_function(
-            self.table, core_schema.union_schema(kinds)
+        return core_schema.with_info_before_validator_function(
+            made, core_schema.union_schema(kinds)
         )
 
     def __get_pydantic_json_schema__(self, schema: object, handler: Any) -> dict[str, Any]:  # noqa: ANN401
@@ -90,6 +97,6 @@ class ByPlannerName:
         for name, entry in zip(PLANNER_TABLES, union["anyOf"], strict=False):
             table = handler.resolve_ref_schema(entry)
             table["properties"]["name"] = {"type": "string", "enum": [name]}
-            if name != UNNAMED:
+            if name not in _DEFAULTS:
                 table["required"] = ["name"]
         return union
