@@ -76,7 +76,7 @@ class Mount:
 
 def compose(
     bus: Bus,
-    arms: Sequence[Mount | tuple[object, ...]],
+    arms: Sequence[Mount],
     name: str = "satellite",
     *,
     shapes: str = "boxes",
@@ -93,7 +93,7 @@ def compose(
 
     Args:
         bus: the bus, the robot's root link, in whose frame arms are mounted.
-        arms: a `Mount` each, or a tuple (arm, (position, attitude), prefix).
+        arms: a `Mount` for each arm.
         name: of the robot.
         shapes: what collision meshes become: `boxes`, or `meshes`, which keeps them by their
             absolute path, pictures included: for this machine only.
@@ -111,9 +111,12 @@ def compose(
     one_of("shapes", shapes, SHAPES)
     if not isinstance(arms, Sequence) or isinstance(arms, str):
         raise InvalidInput("arms", arms, "a sequence of Mounts")
-    mounts = [_mount(entry) for entry in arms]
-    loaded = [load_arm(mount.arm, mount.locked, mount.srdf) for mount in mounts]
-    both = list(zip(loaded, mounts, strict=True))
+    for mount in arms:
+        if not isinstance(mount, Mount):
+            allowed = "Mounts, such as Mount('ur5', position=(0, 0, 0.5), prefix='left_')"
+            raise InvalidInput("arms", mount, allowed)
+    loaded = [load_arm(mount.arm, mount.locked, mount.srdf) for mount in arms]
+    both = list(zip(loaded, arms, strict=True))
     return put_together(bus, both, name, shapes, postures or {}, may_touch)
 
 
@@ -141,18 +144,6 @@ def put_together(
     ElementTree.indent(robot)
     urdf = ElementTree.tostring(robot, encoding="unicode") + "\n"
     return robot_from_urdf(urdf, name, srdf=_srdf(name, postures, [*pairs, *may_touch]))
-
-
-def _mount(entry: object) -> Mount:
-    if isinstance(entry, Mount):
-        return entry
-    allowed = "a Mount, or (arm, (position, attitude), prefix)"
-    if not isinstance(entry, (tuple, list)) or len(entry) != 3:
-        raise InvalidInput("arms", entry, allowed)
-    arm, pose, prefix = entry
-    if not isinstance(pose, (tuple, list)) or len(pose) != 2:
-        raise InvalidInput("arms", entry, allowed)
-    return Mount(arm, pose[0], pose[1], prefix)
 
 
 def _check_names(
