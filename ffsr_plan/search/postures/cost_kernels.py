@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ffsr_plan.collision.nearest_kernels import _DEPTH, _search
+from ffsr_plan.collision.nearest_kernels import STACK_SIZE, nearest_sphere
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 
 COLLISION, DEEPER = 3.0, 15.0  # metres of cost for a collision, and for each metre of its depth
@@ -112,7 +112,7 @@ def step_between(indices: IntArray, tail: int, head: int) -> int:
 @njit(cache=True, nogil=True)
 def working_room() -> Room:
     """Room to work in, for one thread."""
-    return Room(np.empty(15), np.zeros(3), np.empty(_DEPTH, np.int32), np.empty(_DEPTH))
+    return Room(np.empty(15), np.zeros(3), np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE))
 
 
 @njit(cache=True, nogil=True)
@@ -153,10 +153,10 @@ def clearance_at(
                 + r[a][2] * (own[11] - center[2])
             )
             frame[12 + a] = own[12 + a]
-        least, nearest = _search(
-            obstacles.nodes, obstacles.children, obstacles.spheres, obstacles.kinds[g], frame,
-            room.shift, least, nearest, room.stack, room.bounds,
-        )  # fmt: skip
+        kind = obstacles.kinds[g]
+        least, nearest = nearest_sphere(
+            obstacles, kind, frame, room.shift, least, nearest, room.stack, room.bounds
+        )
     return least
 
 
