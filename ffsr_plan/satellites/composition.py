@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
-from typing import cast
 from xml.etree import ElementTree
 
 import numpy as np
@@ -24,7 +23,14 @@ from ffsr_plan.meshes.mesh_files import find, hull, surface
 from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
 from ffsr_plan.satellites.arms import Arm, load_arm
-from ffsr_plan.satellites.bus import Bus, box_shape, elements, fixed_joint, place, text
+from ffsr_plan.satellites.bus import Bus, place
+from ffsr_plan.satellites.urdf_xml import (
+    attribute_text,
+    box_shape,
+    bus_elements,
+    comment,
+    fixed_joint,
+)
 
 SHAPES = ("boxes", "meshes")
 _NO_INERTIA = (
@@ -130,7 +136,7 @@ def put_together(
 ) -> SpaceRobot:
     """The same for arms that have been read; see `compose`."""
     robot = ElementTree.Element("robot", name=name)
-    robot.extend(elements(bus))
+    robot.extend(bus_elements(bus))
     pairs = []
     for arm, mount in arms:
         root = mount.prefix + arm.root
@@ -138,7 +144,7 @@ def put_together(
         own = [part for part in arm.robot if part.tag in ("link", "joint")]
         parts = [joint, *(_renamed(part, arm, mount.prefix, shapes) for part in own)]
         _check_names(robot, parts, arm, mount.prefix)
-        robot.append(_comment(f"arm {Path(arm.where.removeprefix('arm ')).name}"))
+        robot.append(comment(f"arm {Path(arm.where.removeprefix('arm ')).name}"))
         robot.extend(parts)
         pairs += [(mount.prefix + one, mount.prefix + two) for one, two in arm.may_touch]
     ElementTree.indent(robot)
@@ -223,15 +229,11 @@ def _boxes(
         rpy = place_of.get("rpy", rpy)
     count = "a box" if len(boxes) == 1 else f"{len(boxes)} boxes"
     about = f"{count} around {Path(address).name}, at most {1e3 * excess:.1f} mm beyond its hull"
-    found = [_comment(about)]
+    found = [comment(about)]
     for low, high in ends:
         middle = frame.act(0.5 * (low + high)).round(12)
         found.append(box_shape("collision", (high - low).round(7), middle, rpy))
     return found
-
-
-def _comment(words: str) -> ElementTree.Element:
-    return cast("ElementTree.Element", ElementTree.Comment(f" {words.replace('--', '__')} "))
 
 
 def _srdf(
@@ -249,7 +251,7 @@ def _srdf(
         state = ElementTree.SubElement(root, "group_state", name=posture, group="arms")
         for joint, value in joints.items():
             checked = number(f"postures['{posture}'], '{joint}'", value)
-            ElementTree.SubElement(state, "joint", name=str(joint), value=text(checked))
+            ElementTree.SubElement(state, "joint", name=str(joint), value=attribute_text(checked))
     for pair in may_touch:
         if len(pair) != 2 or not all(isinstance(link, str) for link in pair):
             raise InvalidInput("may_touch", pair, "pairs of link names")
