@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
+from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.scene.generators import scatter
-from ffsr_plan.search.optimum import lattice_optimum
 
 FIRST_SEED = 1000
 LATTICE = fp.Lattice(40, fp.Axis(20, 0.15))
@@ -27,7 +27,7 @@ class Case(NamedTuple):
 
     seed: int
     roadmap: fp.Roadmap
-    """Take `roadmap.forget()` for a search: it is shared."""
+    """Take `roadmap.without_edge_states()` for a search: it is shared."""
     optimum: float
     """F of the exact lattice optimum."""
 
@@ -56,7 +56,7 @@ def cases(seeds: Iterable[int], delta: float, lattice: fp.Lattice = LATTICE) -> 
     for seed in seeds:
         try:
             roadmap = fp.Roadmap(random_problem(seed, delta, lattice))
-            optimum = roadmap.objective(lattice_optimum(roadmap.forget()))
+            optimum = roadmap.objective(lattice_optimum(roadmap.without_edge_states()))
         except (fp.NoPath, fp.StartInCollision, fp.GoalInCollision):
             continue
         yield Case(seed, roadmap, optimum)

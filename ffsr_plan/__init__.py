@@ -22,14 +22,14 @@ from ffsr_plan.core.errors import (
     PoseOutOfReach,
     StartInCollision,
     UnprovenPath,
+    WorkerDied,
 )
 from ffsr_plan.dynamics import momentum
 from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
-from ffsr_plan.lattice.refinement import refine
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.planning.plan import Plan
-from ffsr_plan.planning.planner import plan
+from ffsr_plan.planning.planner import plan, refine
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
 from ffsr_plan.problem.problem import Problem
@@ -43,7 +43,8 @@ from ffsr_plan.scene import generators
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
-from ffsr_plan.search.optimum import LatticeOptimum
+from ffsr_plan.search.lattice_optimum import LatticeOptimum
+from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
 from ffsr_plan.trajectory.timed_plan import TimedPlan
 
 if TYPE_CHECKING:
@@ -72,6 +73,7 @@ __all__ = [
     "Plan",
     "PlanningError",
     "PoseOutOfReach",
+    "PostureAnnealing",
     "PostureAxis",
     "Problem",
     "Roadmap",
@@ -83,6 +85,7 @@ __all__ = [
     "TimedPlan",
     "UnprovenPath",
     "WheelMomentum",
+    "WorkerDied",
     "arm_names",
     "certify_edge",
     "clearance",

@@ -42,7 +42,7 @@ class Options(NamedTuple):
 def plan_and_report(source: str, options: Options, target: Path | None, check: bool) -> None:
     """Plan a scenario, write and print the result, re-check it."""
     from ffsr_plan.core.checks import number, one_of, whole_number
-    from ffsr_plan.planning.planner import PLANNERS
+    from ffsr_plan.plans.planners import PLANNERS
     from ffsr_plan.scenario_files.scenario import read_scenario
 
     duration = number("--duration", options.duration, above=0.0)

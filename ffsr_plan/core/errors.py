@@ -73,22 +73,8 @@ class InternalError(FfsrPlanError):
         return f"internal error: {self.detail}; please report it"
 
 
-@dataclass(eq=False, repr=False)
 class IntegrationError(FfsrPlanError):
-    """The integration of the base reaction does not converge.
-
-    Attributes:
-        joint_step: largest change of a joint value in one edge [rad or m].
-    """
-
-    joint_step: float
-
-    def message(self) -> str:
-        """The joint step, and what may help."""
-        return (
-            f"the base reaction does not converge (joint step {self.joint_step:g} in one edge); "
-            "more divisions make the joint steps smaller"
-        )
+    """A numerical integration did not converge."""
 
 
 @dataclass(eq=False, repr=False)
@@ -268,12 +254,12 @@ class WorkerDied(PlanningError):
     Attributes:
         worker: its number, from 0.
         colonies: numbers of the colonies that it was to run.
-        status: its exit status; negative if a signal ended it.
+        status: its exit status, such as `SIGKILL(-9)`.
     """
 
     worker: int
     colonies: list[int]
-    status: int
+    status: str
 
     def message(self) -> str:
         """The worker, its colonies and its exit status."""

@@ -54,6 +54,3 @@ def write_text(what: str, path: Path, text: str) -> None:
             raise
     except (OSError, ValueError) as error:  # an empty name is a ValueError
         raise InvalidInput(what, str(path), f"a file that can be written ({error})") from None
-
-
-write_whole = write_text  # former name

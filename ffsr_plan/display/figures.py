@@ -12,6 +12,7 @@ import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.formatting import proven
+from ffsr_plan.display.plan_tracks import obstacles_near, trail_segments
 from ffsr_plan.lattice.layered_lattice import path_frame
 from ffsr_plan.robots.robot import SpaceRobot
 
@@ -19,12 +20,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.plans.plan_data import PlanData
 
 _START, _GOAL, _PATH, _OBSTACLE = "#2a7f9e", "#2f8f4e", "#d95f02", "#9aa0a8"
 
 
-def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
+def path_figure(plan: PlanData, silhouettes: int = 9) -> Figure:
     """The path among the obstacles, seen along the normal y' of the path frame.
 
     Robot silhouettes at equal steps of the motion, ants' trails by the pheromone left on them.
@@ -34,7 +35,7 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
 
     problem, view = plan.problem, _view(plan)
     figure, axes = _new_figure(9.0, 4.6)
-    near = plan.obstacles_near(0.8 if len(problem.scene) > 60 else np.inf)
+    near = obstacles_near(plan, 0.8 if len(problem.scene) > 60 else np.inf)
     for k, (center, radius) in enumerate(
         zip(problem.scene.centers @ view.T, problem.scene.radii, strict=True)
     ):
@@ -79,7 +80,7 @@ def path_figure(plan: Plan, silhouettes: int = 9) -> Figure:
     return figure
 
 
-def clearance_figure(plan: Plan, samples_per_edge: int = 20) -> Figure:
+def clearance_figure(plan: PlanData, samples_per_edge: int = 20) -> Figure:
     """Least link-to-sphere distance along the motion, nodes marked."""
     from ffsr_plan.collision.distances import ObstacleQuery
 
@@ -97,7 +98,7 @@ def clearance_figure(plan: Plan, samples_per_edge: int = 20) -> Figure:
     return figure
 
 
-def convergence_figure(plan: Plan) -> Figure:
+def convergence_figure(plan: PlanData) -> Figure:
     """Best F so far, best and mean F of each cycle, and the number of different paths."""
     history = plan.history
     cycles = np.arange(1, len(history.best) + 1)
@@ -123,7 +124,7 @@ def convergence_figure(plan: Plan) -> Figure:
     return figure
 
 
-def write_figures(plan: Plan, directory: Path) -> list[Path]:
+def write_figures(plan: PlanData, directory: Path) -> list[Path]:
     """Write path.png, clearance.png and convergence.png; return their paths."""
     written = []
     for name, draw in (
@@ -146,7 +147,7 @@ def _new_figure(width: float, height: float) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _view(plan: Plan) -> Array:
+def _view(plan: PlanData) -> Array:
     """(2, 3) projection onto z' and x' of the path frame; onto the world's x and y on the spot."""
     travel = plan.problem.travel
     if float(np.linalg.norm(travel)) < 1e-9:
@@ -197,7 +198,7 @@ def _hull(points: Array) -> Array:
     return np.array(chain(order) + chain(order[::-1]))
 
 
-def _trails(plan: Plan, view: Array) -> tuple[Array, Array]:
+def _trails(plan: PlanData, view: Array) -> tuple[Array, Array]:
     """Segments (k, 2, 2) of the ants' trails in the plane of view, faint first, and strengths."""
-    segments, strength = plan.trail_segments()
+    segments, strength = trail_segments(plan)
     return segments @ view.T, strength

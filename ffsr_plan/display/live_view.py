@@ -25,7 +25,7 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import Cycle
 
 if TYPE_CHECKING:
-    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.plans.plan_data import PlanData
 
 _BEAT = 0.1  # least seconds between two pictures
 _SHARE = 0.02  # of the colony's time that taking pictures may cost
@@ -104,15 +104,14 @@ class LiveView:
             time.sleep(rest)
         self._paced = time.monotonic()
 
-    def finish(self, plan: Plan) -> None:
+    def finish(self, plan: PlanData) -> None:
         """Play the plan on the page, with its play bar; the page then no longer needs the server.
 
         Waits until open pages have it, five seconds at most.
         """
         from ffsr_plan.display.page import page
-        from ffsr_plan.planning.plan import Plan
 
-        if not isinstance(plan, Plan):
+        if not isinstance(plan, PlanData):
             raise InvalidInput("plan", plan, "a Plan")
         before, _, after = page(plan, self._title).rpartition("</body>")
         self._server.replace(before + _PLAY + after, json.dumps({"over": ""}))

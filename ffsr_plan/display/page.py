@@ -13,6 +13,7 @@ from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.display.html_template import filled
 from ffsr_plan.display.meshcat_objects import CommandLog
+from ffsr_plan.display.plan_tracks import obstacles_near, trail_segments
 from ffsr_plan.display.scene_objects import (
     FEW,
     NEAR,
@@ -28,13 +29,13 @@ from ffsr_plan.display.scene_objects import (
 from ffsr_plan.robots.robot import SpaceRobot
 
 if TYPE_CHECKING:
-    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.plans.plan_data import PlanData
 
 SECONDS = 12.0  # how long the motion is shown; a plan has no time law of its own
 _FRAMES_PER_EDGE = 8
 
 
-def page(plan: Plan, title: str = "") -> str:
+def page(plan: PlanData, title: str = "") -> str:
     """The HTML text of the page; without a title, robot and mode stand there."""
     import meshcat
 
@@ -43,7 +44,7 @@ def page(plan: Plan, title: str = "") -> str:
     frames = plan.at(np.linspace(0.0, 1.0, plan.problem.lattice.divisions * _FRAMES_PER_EDGE + 1))
     view = set_up(viewer, plan.problem, plan.configurations)
     scene = plan.problem.scene
-    near = plan.obstacles_near(NEAR if len(scene) > FEW else np.inf)
+    near = obstacles_near(plan, NEAR if len(scene) > FEW else np.inf)
     add_obstacles(viewer["obstacles"], scene, near)
     add_ends(viewer, plan.problem.robot, plan.configurations[0], plan.configurations[-1])
     _add_tracks(viewer, plan, frames)
@@ -67,10 +68,10 @@ def page(plan: Plan, title: str = "") -> str:
     return filled("page.html", data)
 
 
-def _add_tracks(viewer: Any, plan: Plan, frames: Array) -> None:  # noqa: ANN401 - meshcat
+def _add_tracks(viewer: Any, plan: PlanData, frames: Array) -> None:  # noqa: ANN401 - meshcat
     """Ribbons in the plane of the path: ants' trails by pheromone, base origin, arm tips."""
     up = view_axes(plan.problem)[2]
-    segments, strength = plan.trail_segments()
+    segments, strength = trail_segments(plan)
     if len(segments):
         add_trails(viewer["trails"], segments, strength, up)
     add_track(viewer["tracks"]["base"], frames[:, :3], 0.035, TRACK, up)

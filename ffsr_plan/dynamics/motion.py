@@ -31,6 +31,7 @@ class Motion:
         positions: (m + 1, 3) base origin at the corners, world [m].
         joint_values: (m + 1, nd) at the corners [rad or m].
         attitudes: (m + 1, 4) base attitude at the corners (xyzw), reaction included.
+        joints_are_straight: whether the joints follow one straight line from start to goal.
     """
 
     def __init__(
@@ -60,7 +61,7 @@ class Motion:
         self._start, self._goal = start[3:7], goal[3:7]
         self._origin = start[:3]
         self._progress = np.arange(len(positions)) / (len(positions) - 1)
-        self._straight = joint_values is None
+        self.joints_are_straight = joint_values is None
         if joint_values is None:
             travel = robot.joint_change(start, goal)
             joint_values = robot.joint_values(start) + self._progress[:, None] * travel
@@ -84,7 +85,8 @@ class Motion:
     def reaction(self) -> Reaction:
         """The base rotation that the joint path brings about; as one segment if it is straight."""
         return Reaction(
-            self.robot, self.joint_values[[0, -1]] if self._straight else self.joint_values
+            self.robot,
+            self.joint_values[[0, -1]] if self.joints_are_straight else self.joint_values,
         )
 
     @cached_property
@@ -136,7 +138,7 @@ class Motion:
         """(N, 4) at path parameters (N,) from 0 to 1; translation turns nothing."""
         if not self.mode.attitude_reacts:
             return rotations.slerp(self._start, self._goal, progress)
-        if self._straight:
+        if self.joints_are_straight:
             turned = self.reaction.rotation(np.zeros(len(progress), dtype=np.int64), progress)
             return rotations.multiply(self._start, turned)
         scaled = progress * self.edges

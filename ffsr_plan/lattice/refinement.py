@@ -8,18 +8,17 @@ the rim of what it was given.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise, product
+from typing import NamedTuple
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import REFUSED
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.roadmap import rule_out
 from ffsr_plan.lattice.shortest_path import lazy_shortest_path
-from ffsr_plan.planning.plan import Plan
 from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.prover import Prover
@@ -30,86 +29,89 @@ _ROUNDS = 8
 _REACH = 2  # offsets to either side, so five a layer and axis
 
 
-def refine(plan: Plan) -> Plan:
-    """Move a plan's nodes off the lattice to where F is lower; certified like the plan itself.
+class RefinedPath(NamedTuple):
+    """A path moved off the lattice, all its edges proven free.
+
+    Attributes:
+        offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
+        clearances: (m + 1,) at the nodes [m].
+        length: L of Eq. 6 [m].
+        objective: F of Eq. 8 [length units], lower than before.
+        counts: edges and queries that the refinement took.
+    """
+
+    offsets: Array
+    clearances: Array
+    length: float
+    objective: float
+    counts: Counts
+
+
+def refined_path(
+    lattice: LayeredLattice, prover: Prover, offsets: Array, clearances: Array, objective: float
+) -> RefinedPath | None:
+    """Move a proven path off the lattice to where F is lower; None where F does not fall.
 
     Offsets stay within the lattice's window, in steps of a sixteenth of its spacing.
 
     Args:
-        plan: any plan; on a lattice with posture axes it is returned as it is.
+        lattice: the lattice, without posture axes.
+        prover: proofs along the lattice's nominal motion.
+        offsets: (m + 1, 3) of the path [m].
+        clearances: (m + 1,) at its nodes [m].
+        objective: F of the path [length units].
     """
-    if not isinstance(plan, Plan):
-        raise InvalidInput("plan", plan, "a Plan")
-    if plan.problem.lattice.postures:
-        return plan
-    lattice = LayeredLattice(plan.problem)
-    prover = Prover(lattice.nominal, plan.problem.scene, plan.problem.tolerance)
-    better = refined(plan, lattice, prover)
-    offsets = better.configurations[:, :3] - lattice.nominal.positions
-    least = prover.least_clearance(offsets, better.clearances)
-    return replace(better, certificate=better.certificate._replace(least_clearance=least))
-
-
-def refined(plan: Plan, lattice: LayeredLattice, prover: Prover) -> Plan:
-    """`refine` with a lattice and a prover that are there already; the proven clearance is left."""
-    if not lattice.problem.lattice.axes or lattice.problem.lattice.postures:
-        return plan  # one node a layer: nothing to move; or moving one changes all attitudes behind
-    descent = _Descent(plan, lattice, prover)
+    if not lattice.problem.lattice.axes:
+        return None  # one node a layer: there is no offset to change
+    descent = _Descent(lattice, prover, offsets, clearances, objective)
     descent.run()
-    if not descent.objective < plan.objective:
-        return plan
-    offsets = descent.coordinates @ descent.unit
-    ends = descent.clearances
-    certificate = plan.certificate._replace(
-        edges_free=plan.certificate.edges_free + descent.free,
-        edges_refused=plan.certificate.edges_refused + descent.asked - descent.free,
-        node_queries=plan.certificate.node_queries + descent.nodes,
-        edge_queries=plan.certificate.edge_queries
-        + prover.queries
-        - descent.before
-        - descent.nodes,
-    )
-    return replace(
-        plan,
-        configurations=frozen(lattice.nominal.displaced(offsets).configurations()),
-        length=path_length(plan.problem, offsets),
+    if not descent.objective < objective:
+        return None
+    moved = descent.coordinates @ descent.unit
+    return RefinedPath(
+        offsets=moved,
+        clearances=frozen(descent.clearances),
+        length=path_length(lattice.problem, moved),
         objective=descent.objective,
-        clearances=frozen(ends),
-        certificate=certificate,
+        counts=descent.counts(),
     )
 
 
 class _Descent:
     """A path in whole sixteenths of the lattice's spacing, going down in F."""
 
-    def __init__(self, plan: Plan, lattice: LayeredLattice, prover: Prover) -> None:
-        self._problem, self._prover = plan.problem, prover
-        settings = plan.problem.lattice
+    def __init__(
+        self,
+        lattice: LayeredLattice,
+        prover: Prover,
+        offsets: Array,
+        clearances: Array,
+        objective: float,
+    ) -> None:
+        self._problem, self._prover = lattice.problem, prover
+        settings = lattice.problem.lattice
         axes = [getattr(settings, name) for name in settings.axes]
         self.unit = lattice.directions * (np.array([a.spacing for a in axes]) / _FINEST)[:, None]
         """(axes, 3) displacement [m] of one sixteenth along each axis."""
         self._rim = np.array([a.half_count for a in axes]) * _FINEST
-        across = plan.configurations[:, :3] - lattice.nominal.positions
         sizes = np.sum(self.unit**2, axis=1)
-        self.coordinates: IntArray = np.rint(across @ self.unit.T / sizes).astype(np.int64)
-        self.clearances = np.array(plan.clearances)
-        self.objective = plan.objective
+        self.coordinates: IntArray = np.rint(offsets @ self.unit.T / sizes).astype(np.int64)
+        self.clearances, self.objective = np.array(clearances), objective
         self._known: dict[tuple[int, bytes], float] = {}
         self._verdicts: dict[tuple[int, bytes, bytes], Verdict] = {}
-        self.before = prover.queries
-        self.nodes = 0
+        self._queries_before, self._node_queries = prover.queries, 0
         steps = range(-_REACH, _REACH + 1)
         self._around = np.array(list(product(steps, repeat=len(axes))), dtype=np.int64)
 
-    @property
-    def free(self) -> int:
-        """Edges proven free."""
-        return sum(v.free for v in self._verdicts.values())
-
-    @property
-    def asked(self) -> int:
-        """Edges asked for."""
-        return len(self._verdicts)
+    def counts(self) -> Counts:
+        """Edges decided and queries spent so far."""
+        free = sum(verdict.free for verdict in self._verdicts.values())
+        return Counts(
+            edges_free=free,
+            edges_refused=len(self._verdicts) - free,
+            node_queries=self._node_queries,
+            edge_queries=self._prover.queries - self._queries_before - self._node_queries,
+        )
 
     def run(self) -> None:
         """Go down level by level."""
@@ -166,7 +168,7 @@ class _Descent:
                 at = choices[i, k][None] @ self.unit
                 before = self._prover.queries
                 self._known[key] = float(self._prover.clearances(np.array([i]), at)[0])
-                self.nodes += self._prover.queries - before
+                self._node_queries += self._prover.queries - before
             found[i, k] = self._known[key]
         return found
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import copy
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
 from ffsr_plan.core.errors import InvalidInput, NoPath
 from ffsr_plan.core.kernels import call
+from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
@@ -18,21 +18,6 @@ from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.prover import Prover
-
-
-class Certificate(NamedTuple):
-    """What was proven, and at what cost."""
-
-    edges_free: int
-    """Edges proven free, most of them by the clearances at their ends alone."""
-    edges_refused: int
-    """Edges refused, each for itself or for the sake of one beside it."""
-    node_queries: int
-    """Coal queries for the clearances of nodes: one a configuration, over all pairs."""
-    edge_queries: int
-    """Coal queries for all proofs, obstacles and self-collision together."""
-    least_clearance: float
-    """Proven lower bound on the clearance all along the returned path [m]."""
 
 
 class Roadmap:
@@ -76,8 +61,8 @@ class Roadmap:
         """(m + 1, n) the nodes that touch nothing."""
         return self._nodes.exact() > 0.0
 
-    def forget(self) -> Roadmap:
-        """The same nodes with nothing known of the edges: a clean start for another colony."""
+    def without_edge_states(self) -> Roadmap:
+        """A roadmap that shares the nodes of this one and knows nothing of the edges yet."""
         twin = copy.copy(self)
         twin.status = np.zeros_like(self.status)
         twin._verdicts = {}
@@ -142,13 +127,16 @@ class Roadmap:
         self._nodes.exact()
         return frozen(self.optimistic_node_costs())
 
-    def optimistic_node_costs(self, layers: slice | IntArray = slice(None)) -> Array:
-        """(k, n) lower bounds of `node_costs` from the nodes evaluated so far."""
-        bounds = self._nodes.bounds[layers]
-        costs = np.where(bounds > 0.0, nearness(self.problem, bounds), np.inf)
-        if isinstance(layers, slice):
-            costs[[0, -1], self.lattice.origin] = 0.0  # layers 0 and m do not count in Eq. 8
+    def optimistic_node_costs(self) -> Array:
+        """(m + 1, n) lower bounds of `node_costs` from the nodes evaluated so far."""
+        costs = self.optimistic_costs_of_layers(np.arange(self.lattice.divisions + 1))
+        costs[[0, -1], self.lattice.origin] = 0.0  # layers 0 and m do not count in Eq. 8
         return costs
+
+    def optimistic_costs_of_layers(self, layers: IntArray) -> Array:
+        """(k, n) lower bounds of `node_costs` on inner layers (k,) from the nodes evaluated."""
+        bounds = self._nodes.bounds[layers]
+        return np.where(bounds > 0.0, nearness(self.problem, bounds), np.inf)
 
     def evaluate_all(self) -> None:
         """Evaluate every node now."""
@@ -158,14 +146,13 @@ class Roadmap:
         """Evaluate the nodes of a path (m + 1,); the inner layers of which more is known now."""
         return self._nodes.learn(path)
 
-    def proofs(self) -> Certificate:
-        """What has been proven so far; no clearance of any path yet."""
-        return Certificate(
+    def counts(self) -> Counts:
+        """Edges decided and queries spent so far."""
+        return Counts(
             edges_free=int(np.count_nonzero(self.status == FREE)),
             edges_refused=int(np.count_nonzero(self.status == REFUSED)),
             node_queries=self._nodes.queries,
             edge_queries=self.prover.queries - self._nodes.queries,
-            least_clearance=0.0,
         )
 
     def no_path(self) -> NoPath | None:

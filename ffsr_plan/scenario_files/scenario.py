@@ -16,7 +16,7 @@ from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, one_of, whole_number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.dynamics.mode import Mode
-from ffsr_plan.planning.planner import PLANNERS
+from ffsr_plan.plans.planners import PLANNERS, Planner
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
 from ffsr_plan.problem.problem import Problem
@@ -31,7 +31,6 @@ from ffsr_plan.scenario_files.scenario_tables import (
 )
 from ffsr_plan.scene.generators import belt, cloud, gate, scatter, truss
 from ffsr_plan.scene.scene import Scene
-from ffsr_plan.search.records import Planner
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
 from ffsr_plan.dynamics.mode import Mode
-from ffsr_plan.planning.planner import PLANNERS
+from ffsr_plan.plans.planners import PLANNERS
 from ffsr_plan.robots.collision_shapes import CONTAINERS
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
 

@@ -1,110 +1,192 @@
-"""What a colony reports: each cycle as it goes, and the whole search at its end."""
+"""Records of a search: its request, each cycle, and its result."""
 
 from __future__ import annotations
 
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray
-
-if TYPE_CHECKING:
-    from ffsr_plan.lattice.roadmap import Roadmap
+from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
 
 
 class Cycle(NamedTuple):
-    """The state of the colony after one cycle, for callbacks."""
+    """The state of a colony after one cycle, as callbacks receive it.
+
+    Attributes:
+        number: cycles done, from 1.
+        cycles: cycles allowed.
+        best: least F so far.
+        iteration_best: least F among the ants of the cycle.
+        mean: mean F of the ants of the cycle.
+        distinct: number of different paths among the ants; 1 is stagnation.
+        path: (m + 1,) nodes of the best path so far; with posture axes, the index of the base
+            offset times the number of postures plus the index of the posture.
+        counts: (m + 1, n) ants on each node in this cycle (b_j of Eq. 10).
+        pheromone: (m, n, n) tau of each edge, with posture axes of each change of the base offset,
+            or (m, 1, n) where pheromone lies on the nodes that edges lead to; a view that the
+            colony goes on changing.
+    """
 
     number: int
-    """Cycles done, from 1."""
     cycles: int
-    """Cycles allowed."""
     best: float
-    """Least F so far."""
     iteration_best: float
     mean: float
     distinct: int
-    """Different paths among the ants; 1 is stagnation."""
     path: IntArray
-    """(m + 1,) nodes of the best path so far; with posture axes, base offset times the number of
-    postures plus posture."""
     counts: IntArray
-    """(m + 1, n) ants on each node in this cycle (b_j of Eq. 10)."""
     pheromone: Array
-    """(m, n, n) tau of each edge, with posture axes of each change of the base offset, or (m, 1, n)
-    where pheromone lies on the nodes that edges lead to; a view that the colony goes on
-    changing."""
 
 
 OnCycle = Callable[[Cycle], object]
 
 
-@dataclass(frozen=True)
-class Watch:
-    """What looks on while a planner searches."""
+class SearchMonitor(NamedTuple):
+    """Callback and stopping condition of a search.
+
+    Attributes:
+        on_cycle: called after each cycle, or None.
+        deadline: when to stop, by `time.monotonic()`.
+        stop_requested: asked between cycles; whether the search is to end with what it has.
+    """
 
     on_cycle: OnCycle | None = None
-    """Called after each cycle."""
     deadline: float = math.inf
-    """When to stop, by `time.monotonic()`."""
+    stop_requested: Callable[[], bool] = bool
 
-    def over(self) -> bool:
+    def past_deadline(self) -> bool:
         """Whether the time is up."""
         return time.monotonic() >= self.deadline
 
+    def expired(self) -> bool:
+        """Whether the search has to end now."""
+        return self.past_deadline() or self.stop_requested()
+
 
 class History(NamedTuple):
-    """One entry a cycle, arrays of shape (cycles,)."""
+    """Progress of a search, one entry a cycle.
+
+    Attributes:
+        best: (cycles,) least F so far.
+        iteration_best: (cycles,) least F among the ants of the cycle.
+        mean: (cycles,) mean F of the ants of the cycle.
+        distinct: (cycles,) number of different paths among the ants of the cycle.
+    """
 
     best: Array
-    """Least F so far."""
     iteration_best: Array
-    """Least F among the ants of the cycle."""
     mean: Array
-    """Mean F of the ants of the cycle."""
     distinct: IntArray
-    """Different paths among the ants of the cycle."""
+
+    @classmethod
+    def of_rows(cls, rows: Array) -> History:
+        """The history of rows (cycles, 4): best, iteration best, mean, number of paths."""
+        table = np.array(rows, dtype=np.float64).reshape(-1, 4)
+        best, iteration_best, mean = (frozen(table[:, k].copy()) for k in range(3))
+        return cls(best, iteration_best, mean, frozen(table[:, 3].astype(np.int64)))
 
 
 class Trails(NamedTuple):
-    """The edges that ants walked, arrays of shape (edges,); only the most walked of very many."""
+    """The edges that ants walked; of very many, those walked most.
+
+    On lattices with posture axes an edge is a change of the base offset alone.
+
+    Attributes:
+        layer: (edges,) layer that the edge leaves.
+        tail: (edges,) node left, 0 .. n-1 (a row of `LayeredLattice.indices`).
+        head: (edges,) node reached on the next layer.
+        ants: (edges,) how many ants walked it, all cycles together (Eq. 10 summed over time).
+        laid: (edges,) pheromone laid on it, all cycles together, before any evaporated.
+        pheromone: (edges,) tau at the end.
+    """
 
     layer: IntArray
-    """Layer that the edge leaves."""
     tail: IntArray
-    """Node left, 0 .. n-1 (a row of `LayeredLattice.indices`)."""
     head: IntArray
-    """Node reached on the next layer."""
     ants: IntArray
-    """How many ants walked it, all cycles together (Eq. 10 summed over time)."""
     laid: Array
-    """Pheromone that they laid on it, all cycles together, before any evaporated."""
     pheromone: Array
-    """tau at the end."""
+
+    @classmethod
+    def none(cls) -> Trails:
+        """The trails of a planner without ants."""
+        nodes, amounts = np.zeros(0, dtype=np.int64), np.zeros(0)
+        return cls(nodes, nodes, nodes, nodes, amounts, amounts)
 
 
-class Search(NamedTuple):
-    """The outcome of a planner."""
+class SearchResult(NamedTuple):
+    """The result of a search over a roadmap.
+
+    Attributes:
+        path: (m + 1,) nodes of the best path, all its edges proven free.
+        history: progress of the search.
+        trails: the edges that ants walked.
+        interrupted: whether the time limit or Ctrl-C ended it early.
+    """
 
     path: IntArray
-    """(m + 1,) nodes of the best path."""
     history: History
     trails: Trails
     interrupted: bool = False
-    """Whether the time limit or Ctrl-C ended it early."""
 
 
-class Planner(Protocol):
-    """What `plan` can run: settings with a name and a search."""
+class SearchRequest(NamedTuple):
+    """How a planner is to be run.
 
-    name: ClassVar[str]
-    __dataclass_fields__: ClassVar[dict[str, Any]]
+    Attributes:
+        refine: whether to move the path off the lattice in the end; None for where that is
+            possible.
+        colonies: number of independent colonies.
+        workers: number of processes that they are spread over.
+        time_limit: [s] for the search, from its beginning.
+        on_cycle: called after each cycle of a single colony, or None.
+    """
 
-    def search(
-        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
-    ) -> Search:
-        """Search a roadmap for a path, all of whose edges are proven free."""
+    refine: bool | None = None
+    colonies: int = 1
+    workers: int = 1
+    time_limit: float = math.inf
+    on_cycle: OnCycle | None = None
+
+    def monitor(self) -> SearchMonitor:
+        """The monitor of a search that begins now."""
+        return SearchMonitor(self.on_cycle, time.monotonic() + self.time_limit)
+
+
+class Solution(NamedTuple):
+    """What a planner returns: a proven motion and its figures of merit.
+
+    Attributes:
+        lattice: the lattice that was searched.
+        motion: the motion that was proven free.
+        nodes: (m + 1,) offset indices along the path, 0 = no offset; (m + 1, axes) where the
+            lattice has several axes.
+        length: L of Eq. 6 [m].
+        objective: F of Eq. 8 [length units].
+        lattice_objective: F of the path on the lattice, before refinement.
+        optimum: F of the exact lattice optimum; with posture axes a lower bound on it.
+        clearances: (m + 1,) least link-to-sphere distance at each node [m].
+        history: progress of the search.
+        trails: the edges that ants walked.
+        certificate: what was proven.
+        interrupted: whether Ctrl-C or the time limit ended the search early.
+    """
+
+    lattice: LayeredLattice
+    motion: Motion
+    nodes: IntArray
+    length: float
+    objective: float
+    lattice_objective: float
+    optimum: float
+    clearances: Array
+    history: History
+    trails: Trails
+    certificate: Certificate
+    interrupted: bool

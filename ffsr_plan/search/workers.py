@@ -1,129 +1,101 @@
-"""Independent colonies, side by side on worker processes.
+"""Independent colonies on worker processes, by loky.
 
-A worker is a new Python that reads its job from standard input and writes its outcome to standard
-output. So neither the caller's `__main__` nor its threads and locks come along, and a worker that
-dies is seen at once by its exit status.
+Each worker has an executor of its own, so that the one that dies can be named. Workers do not run
+the caller's `__main__` again. They ignore Ctrl-C: the first one asks them, through an event, for
+what they have; a second one ends them.
 """
 
 from __future__ import annotations
 
-import os
-import pickle
 import signal
-import subprocess
-import sys
 import time
-from concurrent.futures import Future, ThreadPoolExecutor, wait
-from typing import NamedTuple
+from collections.abc import Callable
+from concurrent.futures import Future, wait
+from typing import Any, TypeVar
 
 import numpy as np
 
-from ffsr_plan.core.errors import FfsrPlanError, WorkerDied
-from ffsr_plan.lattice.roadmap import Roadmap
-from ffsr_plan.problem.problem import Problem
-from ffsr_plan.search.records import Planner, Search, Watch
+from ffsr_plan.core.errors import WorkerDied
+from ffsr_plan.search.records import SearchMonitor
+
+Job = TypeVar("Job")
+Outcome = TypeVar("Outcome")
+Run = Callable[[Job, list[np.random.Generator], SearchMonitor], list[Outcome]]
+
+_POLL = 0.2  # [s] between checks for Ctrl-C
+_stop_event: Any = None  # in a worker: set by the caller when Ctrl-C was pressed
 
 
-class Outcome(NamedTuple):
-    """What one colony came to."""
-
-    result: Search | FfsrPlanError
-    edges_free: int
-    edges_refused: int
-    queries: int
-    """Coal queries that its proofs took."""
-
-
-def run_colonies(
-    roadmap: Roadmap,
-    planner: Planner,
+def run_on_workers(
+    run: Run[Job, Outcome],
+    job: Job,
     rngs: list[np.random.Generator],
     workers: int,
-    seconds: float,
+    time_limit: float,
 ) -> list[Outcome]:
-    """One search for each generator, in their order, whatever the number of workers.
+    """One outcome for each generator, in their order, whatever the number of workers.
+
+    Args:
+        run: a function of a module, called in a worker with the job, its share of the generators
+            and a monitor; returns one outcome a generator, fewer if it was stopped.
+        job: whatever `run` needs; it has to be picklable.
+        rngs: one a colony.
+        workers: number of processes.
+        time_limit: [s] for the searches of each worker, from when it has started.
 
     Raises:
         WorkerDied: with the worker's number, its colonies and its exit status.
     """
-    if workers == 1:
-        return _run(roadmap, planner, rngs, seconds)
+    from loky import ProcessPoolExecutor
+    from loky.backend.context import get_context
+    from loky.process_executor import TerminatedWorkerError
+
     shares = [list(range(w, len(rngs), workers)) for w in range(min(workers, len(rngs)))]
-    processes = [
-        subprocess.Popen(
-            [sys.executable, "-c", "from ffsr_plan.search.workers import main; main()"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            start_new_session=True,  # Ctrl-C reaches us alone, and we pass it on
-        )
-        for _ in shares
-    ]
-
-    def collect(worker: int) -> list[Outcome]:
-        share, process = shares[worker], processes[worker]
-        job = pickle.dumps((roadmap.problem, planner, [rngs[k] for k in share], seconds))
-        answer, _ = process.communicate(job)
-        if process.returncode != 0:
-            raise WorkerDied(worker, share, process.returncode)
-        outcome: list[Outcome] = pickle.loads(answer)
-        return outcome
-
-    pool = ThreadPoolExecutor(len(shares))
-    futures = [pool.submit(collect, worker) for worker in range(len(shares))]
+    stop = get_context("loky").Event()
+    executors = [ProcessPoolExecutor(1, initializer=_start, initargs=(stop,)) for _ in shares]
     try:
-        _wait(futures, processes)
-        parts = [future.result() for future in futures]
+        futures = [
+            executor.submit(_run_share, run, job, [rngs[k] for k in share], time_limit)
+            for executor, share in zip(executors, shares, strict=True)
+        ]
+        _wait(futures, stop)
+        outcomes: dict[int, Outcome] = {}
+        for worker, (share, future) in enumerate(zip(shares, futures, strict=True)):
+            try:
+                outcomes |= zip(share, future.result(), strict=False)  # fewer after Ctrl-C
+            except TerminatedWorkerError as error:
+                raise WorkerDied(worker, share, _exit_status(error)) from None
     finally:
-        for process in processes:
-            process.kill()
-        pool.shutdown()
-    results: dict[int, Outcome] = {}
-    for share, part in zip(shares, parts, strict=True):
-        results |= zip(share, part, strict=False)  # fewer outcomes than colonies after Ctrl-C
-    return [results[k] for k in sorted(results)]
+        for executor in executors:
+            executor.shutdown(wait=True, kill_workers=True)
+    return [outcomes[k] for k in sorted(outcomes)]
 
 
-def _wait(futures: list[Future[list[Outcome]]], processes: list[subprocess.Popen[bytes]]) -> None:
-    """Until all are back. Ctrl-C asks the workers for what they have, a second one ends all."""
+def _start(stop: Any) -> None:  # noqa: ANN401 - an event of loky's context has no public type
+    global _stop_event
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _stop_event = stop
+
+
+def _run_share(
+    run: Run[Job, Outcome], job: Job, rngs: list[np.random.Generator], time_limit: float
+) -> list[Outcome]:
+    deadline = time.monotonic() + time_limit
+    return run(job, rngs, SearchMonitor(None, deadline, lambda: bool(_stop_event.is_set())))
+
+
+def _wait(futures: list[Future[Any]], stop: Any) -> None:  # noqa: ANN401
+    """Wait for all. The first Ctrl-C asks the workers to stop, a second one is raised."""
     try:
-        while wait(futures, timeout=0.2).not_done:
+        while wait(futures, timeout=_POLL).not_done:
             pass
     except KeyboardInterrupt:
-        for process in processes:
-            process.send_signal(signal.SIGINT)
-        while wait(futures, timeout=0.2).not_done:
+        stop.set()
+        while wait(futures, timeout=_POLL).not_done:
             pass
 
 
-def _run(
-    roadmap: Roadmap,
-    planner: Planner,
-    rngs: list[np.random.Generator],
-    seconds: float,
-) -> list[Outcome]:
-    """No colony knows what another one has proven: its outcome must not depend on that."""
-    deadline = time.monotonic() + seconds
-    roadmap.evaluate_all()
-    outcomes = []
-    for rng in rngs:
-        own, before = roadmap.forget(), roadmap.prover.queries
-        result: Search | FfsrPlanError
-        try:
-            result = planner.search(own, rng, Watch(None, deadline))
-        except FfsrPlanError as error:
-            result = error
-        proofs, queries = own.proofs(), roadmap.prover.queries - before
-        outcomes.append(Outcome(result, proofs.edges_free, proofs.edges_refused, queries))
-        if isinstance(result, Search) and result.interrupted and time.monotonic() < deadline:
-            break  # by Ctrl-C: no more colonies
-    return outcomes
-
-
-def main() -> None:
-    """What a worker process runs."""
-    answer = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # whatever prints must not get into the answer
-    problem, planner, rngs, seconds = pickle.load(sys.stdin.buffer)
-    assert isinstance(problem, Problem)
-    with answer:
-        pickle.dump(_run(Roadmap(problem), planner, rngs, seconds), answer)
+def _exit_status(error: Exception) -> str:
+    """The exit status in loky's message, such as `SIGKILL(-9)`."""
+    _, _, status = str(error).partition("The exit codes of the workers are {")
+    return status.partition("}")[0] or "unknown"

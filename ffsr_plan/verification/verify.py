@@ -24,7 +24,7 @@ from ffsr_plan.verification.solids import Shape, least_sphere_distance, sphere_d
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 
 if TYPE_CHECKING:
-    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.plans.plan_data import PlanData
 
 MOMENTUM_LIMIT = 1e-9
 AGREEMENT = 1e-9
@@ -67,7 +67,7 @@ class Report:
     """Longest way of any shape's centre between two samples [m]."""
 
 
-def verify(plan: Plan, samples: int = 2000) -> Report:
+def verify(plan: PlanData, samples: int = 2000) -> Report:
     """Check a plan again, from its configurations and its motion alone.
 
     Args:
@@ -128,7 +128,7 @@ def verify(plan: Plan, samples: int = 2000) -> Report:
     )  # fmt: skip
 
 
-def _poses(plan: Plan, bodies: Bodies, q: Array) -> dict[str, Array]:
+def _poses(plan: PlanData, bodies: Bodies, q: Array) -> dict[str, Array]:
     robot = plan.problem.robot
     values = robot.joint_values(q)
     joints = {name: values[:, k] for k, name in enumerate(robot.joint_names)}
@@ -144,7 +144,7 @@ def _center_of_mass(bodies: Bodies, poses: dict[str, Array]) -> Array:
     return np.asarray(moment / mass)
 
 
-def _least_clearance(plan: Plan, shapes: list[Shape], placed: list[Array]) -> float:
+def _least_clearance(plan: PlanData, shapes: list[Shape], placed: list[Array]) -> float:
     """Over all samples; spheres that a shape cannot come nearest to are left out."""
     centers, radii = plan.problem.scene.centers, plan.problem.scene.radii
     least = np.inf
@@ -174,13 +174,13 @@ def _least_separation(pairs: list[tuple[Shape, Shape]], placed: dict[Shape, Arra
     return least
 
 
-def _momentum_residual(plan: Plan, bodies: Bodies) -> float:
+def _momentum_residual(plan: PlanData, bodies: Bodies) -> float:
     """|angular momentum|, relative to the sum of the terms' sizes."""
     total, scale = _momentum(plan, bodies, _stations(plan))
     return _relative(total, scale)
 
 
-def _wheel_momentum_error(plan: Plan, bodies: Bodies) -> float:
+def _wheel_momentum_error(plan: PlanData, bodies: Bodies) -> float:
     """The same for what is left once the wheels' share is added, for one time law."""
     divisions, duration = plan.problem.lattice.divisions, 10.0
     law = Polynomial([0, 0, 0, 10, -15, 6])
@@ -195,7 +195,7 @@ def _wheel_momentum_error(plan: Plan, bodies: Bodies) -> float:
     return _relative(np.concatenate(left), rate * scale)
 
 
-def _stations(plan: Plan) -> Array:
+def _stations(plan: PlanData) -> Array:
     """Where the momentum is looked at, in edges; differences stay within each edge."""
     stations: Array = np.arange(plan.problem.lattice.divisions)[:, None] + np.array(_STATIONS)
     return stations.ravel()
@@ -207,7 +207,7 @@ def _relative(vectors: Array, scale: Array) -> float:
     return float(np.linalg.norm(vectors, axis=1).max()) / largest if largest > 0.0 else 0.0
 
 
-def _momentum(plan: Plan, bodies: Bodies, stations: Array) -> tuple[Array, Array]:
+def _momentum(plan: PlanData, bodies: Bodies, stations: Array) -> tuple[Array, Array]:
     """Sum of m (r - c) x (v - v_c) + I w over bodies (n, 3), and of the terms' sizes (n,).
 
     World axes, at `stations` (n,) counted in edges [kg m^2 rad per edge].
@@ -268,7 +268,7 @@ def _rotation_vector(r: Array) -> Array:
     return np.asarray(0.5 * factor[:, None] * odd)
 
 
-def _ends_and_limits(plan: Plan) -> list[str]:
+def _ends_and_limits(plan: PlanData) -> list[str]:
     problem, robot = plan.problem, plan.problem.robot
     first, last = plan.configurations[0], plan.configurations[-1]
     values = robot.joint_values(plan.configurations)
@@ -296,7 +296,7 @@ def _ends_and_limits(plan: Plan) -> list[str]:
     return problems
 
 
-def _recomputed(plan: Plan, bodies: Bodies, problems: list[str]) -> tuple[float, float]:
+def _recomputed(plan: PlanData, bodies: Bodies, problems: list[str]) -> tuple[float, float]:
     """Node clearances, L and F from the configurations alone, Eqs. 4, 6, 8 and 9 written out."""
     problem = plan.problem
     q, m, unit = plan.configurations, problem.lattice.divisions, problem.length_unit

@@ -9,6 +9,7 @@ from PIL import Image
 
 from ffsr_plan.display import figures
 from ffsr_plan.display.page import page
+from ffsr_plan.display.plan_tracks import obstacles_near
 from tests.helpers import chromium
 
 CHROMIUM = chromium.PROGRAM
@@ -118,7 +119,7 @@ def test_thousands_of_spheres_are_drawn_in_two_goes_with_few_triangles():
     import ffsr_plan as fp
 
     plan = fp.plan(fp.load_scenario("debris"), fp.LatticeOptimum(), refine=False)
-    scene, near = plan.problem.scene, plan.obstacles_near(0.8)
+    scene, near = plan.problem.scene, obstacles_near(plan, 0.8)
     text = re.search(r'"commands": (\[.*?\])', page(plan), flags=re.S)[1]
     commands = [umsgpack.unpackb(base64.b64decode(c)) for c in json.loads(text)]
     drawn = {

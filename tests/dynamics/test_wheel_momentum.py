@@ -11,7 +11,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.dynamics import wheel_momentum as wheels
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import rest_to_rest, wheel_momentum
-from ffsr_plan.planning import plan as plan_module
+from ffsr_plan.plans import plan_data
 from ffsr_plan.robots.robot import robot_from_urdf
 from tests.helpers.builders import (
     box,
@@ -193,7 +193,7 @@ def test_verification_notices_world_axes_passed_off_as_the_bases(monkeypatch):
         right = wheel_momentum(*given)
         return right._replace(vectors=right.world)
 
-    monkeypatch.setattr(plan_module, "wheel_momentum", forged)
+    monkeypatch.setattr(plan_data, "wheel_momentum", forged)
     assert not plan.verify(5).ok
 
 

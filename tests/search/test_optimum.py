@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.lattice.edge_states import FREE, REFUSED
+from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
-from ffsr_plan.search.optimum import lattice_optimum
 from tests.helpers.brute_force import first_layer_out_of_reach, optimum
 from tests.helpers.builders import random_scene
 
@@ -43,14 +43,14 @@ def test_the_optimum_equals_brute_force_over_certified_edges(robot_name, normal,
     roadmap = roadmap_or_none(problem(seed, robot_name, normal=normal, obstacles=4))
     if roadmap is None:
         return
-    best, _ = optimum(roadmap.forget())
+    best, _ = optimum(roadmap.without_edge_states())
     if best == np.inf:
         with pytest.raises(fp.NoPath):
             lattice_optimum(roadmap)
         return
     path = lattice_optimum(roadmap)
     assert roadmap.objective(path) == pytest.approx(best, rel=1e-12)
-    fresh = roadmap.forget()
+    fresh = roadmap.without_edge_states()
     assert fresh.prove_path(path)
 
 
@@ -61,13 +61,16 @@ def test_no_path_names_the_first_layer_out_of_reach_whatever_the_planner(seed):
     roadmap = roadmap_or_none(p)
     if roadmap is None:
         return
-    layer = first_layer_out_of_reach(roadmap.forget())
+    layer = first_layer_out_of_reach(roadmap.without_edge_states())
     for planner in (fp.LatticeOptimum(), fp.MaxMinAntSystem(cycles=5), fp.AntSystem(cycles=2)):
         if layer is None:
-            assert planner.search(roadmap.forget(), np.random.default_rng(0)).path is not None
+            assert (
+                planner.search(roadmap.without_edge_states(), np.random.default_rng(0)).path
+                is not None
+            )
         else:
             with pytest.raises(fp.NoPath) as caught:
-                planner.search(roadmap.forget(), np.random.default_rng(0))
+                planner.search(roadmap.without_edge_states(), np.random.default_rng(0))
             assert caught.value.layer == layer
             assert caught.value.obstacles
 
@@ -83,7 +86,7 @@ def test_what_a_refusal_rules_out_is_really_blocked(seed):
     for _ in range(60):
         roadmap.certify(int(rng.integers(1, 5)), *map(int, rng.integers(0, 5, 2)))
     ruled_out = [tuple(map(int, e)) for e in np.argwhere(roadmap.status == REFUSED)]
-    fresh = roadmap.forget()
+    fresh = roadmap.without_edge_states()
     for edge in ruled_out:
         assert not fresh.certify(*edge).free
 
@@ -95,7 +98,7 @@ def test_what_is_obviously_free_is_free(seed):
     if roadmap is None:
         return
     roadmap.prove_obvious()
-    fresh = roadmap.forget()
+    fresh = roadmap.without_edge_states()
     for edge in np.argwhere(roadmap.status == FREE):
         assert fresh.certify(*map(int, edge)).free
 
@@ -109,9 +112,9 @@ def test_evaluating_only_the_nodes_of_candidate_paths_gives_the_same_optimum(del
         p = fp.Problem(given_.robot, scene, given_.start, given_.goal, delta=delta,
                        lattice=fp.Lattice(40, fp.Axis(20, 0.15)))  # fmt: skip
         lazy, eager = Roadmap(p), Roadmap(p)
-        assert eager.proofs().node_queries == 2
+        assert eager.counts().node_queries == 2
         assert np.isfinite(eager.clearances[1:-1]).all()
-        assert eager.proofs().node_queries == 39 * 41 + 2
+        assert eager.counts().node_queries == 39 * 41 + 2
         try:
             best = eager.objective(lattice_optimum(eager))
         except fp.NoPath:
@@ -119,7 +122,7 @@ def test_evaluating_only_the_nodes_of_candidate_paths_gives_the_same_optimum(del
                 lattice_optimum(lazy)
             continue
         assert lazy.objective(lattice_optimum(lazy)) == pytest.approx(best, rel=1e-12)
-        assert lazy.proofs().node_queries < 0.6 * eager.proofs().node_queries
+        assert lazy.counts().node_queries < 0.6 * eager.counts().node_queries
 
 
 @given(seeds)
@@ -154,5 +157,5 @@ def test_equally_good_paths_give_the_same_answer_every_time(point):
 def test_the_optimum_certifies_far_fewer_edges_than_there_are():
     roadmap = Roadmap(fp.load_scenario("fig2a"))
     lattice_optimum(roadmap)
-    proofs = roadmap.proofs()
+    proofs = roadmap.counts()
     assert proofs.edges_free + proofs.edges_refused < 1000 < roadmap.status.size

@@ -20,16 +20,16 @@ from typing import NamedTuple
 from unittest.mock import patch
 
 import numpy as np
+from ffsr_plan.search.postures.posture_planner import _worked_out
 
 import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, publish, table
 from benchmarks.studies.attitude.gates import variation
-from benchmarks.studies.attitude.query_count import count_queries, counting_ground, queries
+from benchmarks.studies.attitude.query_count import count_queries, posture_grid, queries
 from benchmarks.studies.attitude.yaw_programme import REACHABLE, Way, cheapest_way, coarse_to_fine
 from ffsr_plan.search.postures import colony
-from ffsr_plan.search.postures.cost_kernels import Ground
+from ffsr_plan.search.postures.cost_kernels import PostureGrid
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
-from ffsr_plan.search.postures.posture_planner import _worked_out
 from ffsr_plan.search.records import Watch
 from tests.helpers.spatial_robot import spatial_problem
 
@@ -58,7 +58,7 @@ of the base origin alone, which are not counted.
 A query is a distance from the robot to the obstacles at one node and attitude. Rows without "as
 shipped" had as many queries as the programme with {BINS} bins: annealing by the number of its
 shifts, ants without annealing by the number of cycles. "Proven at once" counts paths that are
-proven free edge by edge as they were found, before the planner bars an edge or bends the path.
+proven free edge by edge as they were found, before the planner bars an edge or squared_steps the path.
 CPU times are of one thread, without compiling and without the proof; counting the queries adds
 about a fifth to those of the ants and of annealing, nothing to the programme's.
 
@@ -91,13 +91,13 @@ class Run(NamedTuple):
 class Tally(Watch):
     """Notes the queries after each cycle and each annealing; ends a search at its budget."""
 
-    ground: Ground = field(kw_only=True)
+    grid: PostureGrid = field(kw_only=True)
     budget: float = math.inf
     counts: list[int] = field(default_factory=list)
 
     def over(self) -> bool:
         """Whether the budget is used up."""
-        self.counts.append(queries(self.ground))
+        self.counts.append(queries(self.grid))
         return self.counts[-1] >= self.budget
 
 
@@ -108,7 +108,7 @@ def programme(lattice: PostureLattice, solve: Callable[[], Way]) -> Run:
     seconds = time.process_time() - begin
     if way.cost == np.inf:
         return Run(way.cost, way.queries, seconds, False)
-    again = colony.cost_of(counting_ground(lattice), way.path)
+    again = colony.cost_of(posture_grid(lattice), way.path)
     if not math.isclose(again, way.cost, rel_tol=1e-9):
         raise RuntimeError(f"a programme's path costs {again}, not {way.cost}")
     holds = _worked_out(lattice, way.path).holds
@@ -123,16 +123,16 @@ def colony(
     **settings: object,
 ) -> tuple[Run, int]:
     """Run the colony with some of its module's settings changed; also the queries of annealing."""
-    ground = counting_ground(lattice)
-    watch = Tally(ground=ground, budget=budget)
+    grid = posture_grid(lattice)
+    watch = Tally(grid=grid, budget=budget)
     begin = time.process_time()
     with patch.multiple(colony, _COLD=colony._COLD, **settings):
         found = colony.search(
-            lattice, ground, planner.ants, planner.cycles, planner.pheromone,
+            lattice, grid, planner.ants, planner.cycles, planner.pheromone,
             np.random.default_rng(seed), watch,
         )  # fmt: skip
         rounds = len(colony._HEATS)
-    seconds, asked = time.process_time() - begin, queries(ground)
+    seconds, asked = time.process_time() - begin, queries(grid)
     before = [0, *watch.counts][-1 - rounds]
     holds = _worked_out(lattice, found.path).holds
     return Run(found.cost, asked, seconds, holds), asked - before
@@ -141,7 +141,12 @@ def colony(
 def compared(problem: fp.Problem, seeds: int) -> dict[str, list[Run]]:
     """Every search on one problem."""
     lattice = PostureLattice(problem)
-    _ = lattice.turns, lattice.frames, lattice.allowed, lattice.bends  # common to all
+    _ = (
+        lattice.step_rotations,
+        lattice.frames,
+        lattice.allowed,
+        lattice.squared_steps,
+    )  # common to all
     runs: dict[str, list[Run]] = {
         f"programme, {bins} bins": [programme(lattice, lambda b=bins: cheapest_way(lattice, b))]
         for bins in (41, BINS, FINEST)
@@ -237,7 +242,7 @@ def in_space(every: Iterable[dict[str, list[Run]]]) -> str:
     needed = nodes * bins
     return (
         "## In space, computed and not run\n\n"
-        f"The robot of tests/helpers/spatial_robot.py turns by 10 degrees on the spot: {lattice.size} postures "
+        f"The robot of tests/helpers/spatial_robot.py step_rotations by 10 degrees on the spot: {lattice.size} postures "
         f"of three axes on each of {len(lattice.joint_values)} layers, {nodes} nodes between the "
         f"ends in which no links touch, {steps} steps from each. Rotations by up to "
         f"r = {math.degrees(REACHABLE):.0f} degrees fill a volume of 8 pi (r - sin r), which is "
@@ -248,7 +253,7 @@ def in_space(every: Iterable[dict[str, list[Run]]]) -> str:
         f"hours. Held to as many states as in the plane, {states / 1e6:.1f} million, its bins "
         f"would be {math.degrees((ball * nodes / states) ** (1 / 3)):.0f} degrees wide. The "
         "colony's cost does not depend on bins: [turning.md](turning.md) has its times for such "
-        "turns."
+        "step_rotations."
     )
 
 
@@ -258,11 +263,11 @@ def compile_all() -> None:
     lattice = PostureLattice(variation("gate", 0))
     cheapest_way(lattice, 3)
     colony(lattice, ANNEALED, 0)
-    ground = counting_ground(lattice)
-    straight = np.tile(ground.origin, (len(lattice.joint_values), 1))
-    colony.cost_of(ground, straight)
-    if queries(ground) != len(lattice.joint_values) - 1:
-        raise RuntimeError(f"{queries(ground)} queries counted along a path, not one for each edge")
+    grid = posture_grid(lattice)
+    straight = np.tile(grid.origin, (len(lattice.joint_values), 1))
+    colony.cost_of(grid, straight)
+    if queries(grid) != len(lattice.joint_values) - 1:
+        raise RuntimeError(f"{queries(grid)} queries counted along a path, not one for each edge")
 
 
 def main(argv: Sequence[str] | None = None) -> None:

@@ -2,9 +2,9 @@
 
     python -m benchmarks.studies.attitude.turning
 
-The planar dual-arm robot turns its base by 5 to 75 degrees, either way, and ends in the posture it
+The planar dual-arm robot step_rotations its base by 5 to 75 degrees, either way, and ends in the posture it
 began with; lengths are held against the dynamic programme of tests/helpers/turning_programme.py. A robot with two arms
-of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last, the parts of the search against each
+of three joints (tests/helpers/spatial_robot.py) step_rotations about five axes. Last, the parts of the search against each
 other. Writes docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
 """
 
@@ -88,19 +88,19 @@ def _before(plan: fp.Plan) -> float:
 
 
 def planar_table(angles: Iterable[int], seeds: int) -> str:
-    """How the planar robot turns, either way."""
+    """How the planar robot step_rotations, either way."""
     oracle = turning_oracle(planar(10), math.radians(0.1))
     rows, every, missed = [], [], 0
     for size in angles:
         for degrees in (size, -size):
             tries = [turn(planar(degrees), seed) for seed in range(seeds)]
-            turns = [t for t in tries if t is not None]
-            missed += seeds - len(turns)
+            step_rotations = [t for t in tries if t is not None]
+            missed += seeds - len(step_rotations)
             least = oracle.least(math.radians(degrees))
-            excess = [t.lattice / least - 1.0 for t in turns]
+            excess = [t.lattice / least - 1.0 for t in step_rotations]
             every += excess
-            if turns:
-                rows.append(_row(f"{degrees:+d}", turns, seeds, least, excess))
+            if step_rotations:
+                rows.append(_row(f"{degrees:+d}", step_rotations, seeds, least, excess))
             print(f"{degrees:+d} degrees", file=sys.stderr, flush=True)
     head = ("degrees", "reached", "error before [deg]", "after", "oracle L [m]")
     more = ("L above it, median", "worst", "L corrected [m]", "seconds")
@@ -113,40 +113,42 @@ def planar_table(angles: Iterable[int], seeds: int) -> str:
 
 
 def _row(
-    name: str, turns: Sequence[Turn], seeds: int, least: float, excess: Sequence[float]
+    name: str, step_rotations: Sequence[Turn], seeds: int, least: float, excess: Sequence[float]
 ) -> tuple[str, ...]:
     return (
         name,
-        f"{len(turns)} of {seeds}",
-        f"{max(t.before for t in turns):.2f}",
-        f"{max(t.after for t in turns):.0e}",
+        f"{len(step_rotations)} of {seeds}",
+        f"{max(t.before for t in step_rotations):.2f}",
+        f"{max(t.after for t in step_rotations):.0e}",
         f"{least:.2f}",
         f"{np.median(excess):.1%}",
         f"{max(excess):.1%}",
-        f"{np.median([t.final for t in turns]):.2f}",
-        f"{np.median([t.seconds for t in turns]):.1f}",
+        f"{np.median([t.final for t in step_rotations]):.2f}",
+        f"{np.median([t.seconds for t in step_rotations]):.1f}",
     )
 
 
 def spatial_table(settings: Iterable[tuple[int, int, int, float]], seeds: int) -> str:
-    """How the robot with three posture axes turns about five axes."""
+    """How the robot with three posture axes step_rotations about five axes."""
     rows = []
     for degrees, divisions, levels, spacing in settings:
         for name, axis in AXES.items():
             problem = spatial_problem(degrees, axis, divisions, levels, spacing)
-            turns = [t for seed in range(seeds) if (t := turn(problem, seed)) is not None]
+            step_rotations = [t for seed in range(seeds) if (t := turn(problem, seed)) is not None]
             figures = (
                 (
-                    f"{max(t.before for t in turns):.2f}",
-                    f"{max(t.after for t in turns):.0e}",
-                    f"{np.median([t.lattice for t in turns]):.2f}",
-                    f"{np.median([t.seconds for t in turns]):.1f}",
+                    f"{max(t.before for t in step_rotations):.2f}",
+                    f"{max(t.after for t in step_rotations):.0e}",
+                    f"{np.median([t.lattice for t in step_rotations]):.2f}",
+                    f"{np.median([t.seconds for t in step_rotations]):.1f}",
                 )
-                if turns
+                if step_rotations
                 else ("", "", "", "")
             )
             lattice = f"{divisions} x {2 * levels + 1}^3 of {spacing:g}"
-            rows.append((f"{degrees}, {name}", lattice, f"{len(turns)} of {seeds}", *figures))
+            rows.append(
+                (f"{degrees}, {name}", lattice, f"{len(step_rotations)} of {seeds}", *figures)
+            )
             print(f"{degrees} degrees about {name}", file=sys.stderr, flush=True)
     head = ("degrees, axis", "lattice", "reached", "error before [deg]", "after", "L [m]", "s")
     return table(head, rows)

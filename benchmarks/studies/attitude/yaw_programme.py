@@ -21,24 +21,24 @@ import numpy as np
 from numba import njit
 
 from ffsr_plan.robots.shape_arrays import ROUND
-from ffsr_plan.search.postures.colony import _MISSED, ground_of
+from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
 from ffsr_plan.search.postures.cost_kernels import (
-    CLOSE_ENOUGH,
-    DELTA_D,
-    REACH,
+    FREE_ATTITUDE_ERROR,
     angle_to,
     clearance_at,
     compose,
     edge_length,
-    is_barred,
     is_free,
+    is_refused,
+    new_workspace,
     node_cost,
-    working_room,
 )
-from ffsr_plan.search.postures.lower_bound import _origin_inside
+from ffsr_plan.search.postures.lower_bound import origin_is_inside
+from ffsr_plan.search.postures.posture_grid import posture_grid
 from ffsr_plan.search.postures.walk_kernels import cost_to_go
 
 REACHABLE = math.radians(20.0)
+ATTITUDE_WEIGHT = AnnealingSettings().attitude_weights[1]  # [m] of cost a radian
 
 
 class Way(NamedTuple):
@@ -52,67 +52,67 @@ class Way(NamedTuple):
     """Distances from the robot to the obstacles that were asked for."""
 
 
-def cheapest_way(lattice, bins, reach=REACHABLE, ceiling=np.inf, ground=None):
+def cheapest_way(lattice, bins, reach=REACHABLE, ceiling=np.inf, grid=None):
     """The cheapest way from start to goal with the yaw in bins.
 
     Args:
-        lattice: of a robot that turns in its plane.
+        lattice: of a robot that step_rotations in its plane.
         bins: an odd number.
         reach: the bins share the yaws from -reach to reach [rad]; ways beyond are given up.
         ceiling: cost of a path that is known [m]; only ways no dearer are found.
-        ground: as of `ground_of`, if there is one already.
+        grid: as of `posture_grid`, if there is one already.
     """
-    ground = ground_of(lattice) if ground is None else ground
-    turns = ground.turns
-    assert not np.any(turns[..., :2]), "only for robots that turn in their plane"
+    grid = posture_grid(lattice) if grid is None else grid
+    step_rotations = grid.step_rotations
+    assert not np.any(step_rotations[..., :2]), "only for robots that turn in their plane"
     assert bins % 2 == 1
-    ahead = least_to_go(lattice, ground)
-    m, count, offsets = len(turns), len(ground.successors), len(ground.across)
+    ahead = least_to_go(lattice, grid)
+    m, count, offsets = len(step_rotations), len(grid.successors), len(grid.across)
     before = np.full((m + 1, count, bins, offsets), -1, dtype=np.int32)
     path = np.empty((m + 1, 2), dtype=np.int64)
     cost, queries = _programme(
-        ground, 2.0 * np.arctan2(turns[..., 2], turns[..., 3]), ahead, 2.0 * reach / bins,
-        float(_MISSED[1]), ceiling + 1e-9, before, path,
+        grid, 2.0 * np.arctan2(step_rotations[..., 2], step_rotations[..., 3]), ahead, 2.0 * reach / bins,
+        ATTITUDE_WEIGHT, ceiling + 1e-9, before, path,
     )  # fmt: skip
     return Way(path, cost, queries)
 
 
-def coarse_to_fine(lattice, bins, reach=REACHABLE, ground=None):
+def coarse_to_fine(lattice, bins, reach=REACHABLE, grid=None):
     """The same, each number of `bins` below the cost that the ones before it came to."""
     best, queries = Way(np.empty((0, 2)), np.inf, 0), 0
     for number in bins:
-        way = cheapest_way(lattice, number, reach, best.cost, ground)
+        way = cheapest_way(lattice, number, reach, best.cost, grid)
         queries += way.queries
         best = way if way.cost < best.cost else best
     return best._replace(queries=queries)
 
 
-def least_to_go(lattice, ground):
+def least_to_go(lattice, grid):
     """(m + 1, b, n) cost [m] that no way from a node to the goal falls below, at any attitude."""
-    point = np.zeros((*ground.frames.shape[:2], 1, 15))
+    point = np.zeros((*grid.frames.shape[:2], 1, 15))
     point[..., [0, 4, 8]] = 1.0
-    inside = _origin_inside(lattice)
-    shrunk = ground._replace(
-        obstacles=ground.obstacles._replace(
+    inside = origin_is_inside(lattice)
+    shrunk = grid._replace(
+        obstacles=grid.obstacles._replace(
             kinds=np.array([ROUND] if inside else [], dtype=np.int64)
         ),
         frames=point,
-        centers=np.zeros_like(ground.centers),
+        centers=np.zeros_like(grid.centers),
     )
-    return cost_to_go(shrunk, np.tile(ground.start, (len(point), 1)))
+    return cost_to_go(shrunk, np.tile(grid.start, (len(point), 1)))
 
 
 @njit  # not kept on disk, where it would outlive changes of the colony's kernels
-def _programme(ground, yaw_steps, ahead, width, weight, ceiling, before, path):
+def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
     m, count, bins, offsets = len(before) - 1, *before.shape[1:]
-    steps, half = ground.successors.shape[1], bins // 2
-    room, quat, delta_d = working_room(), np.empty(4), ground.numbers[DELTA_D]
-    free = is_free(ground)
+    steps, half = grid.successors.shape[1], bins // 2
+    workspace, quat, delta_d = new_workspace(), np.empty(4), grid.delta_d
+    free = is_free(grid)
     shape = count, bins, offsets
     cost, yaw = np.full(shape, np.inf), np.zeros(shape)
     new_cost, new_yaw = cost.copy(), yaw.copy()
     lengths = np.empty((steps, offsets, offsets))
-    cost[ground.origin[1], half, ground.origin[0]] = 0.0
+    cost[grid.origin[1], half, grid.origin[0]] = 0.0
     queries = 0
     for i in range(m):
         new_cost[:] = np.inf
@@ -123,7 +123,7 @@ def _programme(ground, yaw_steps, ahead, width, weight, ceiling, before, path):
                 for b in range(offsets):
                     for b_on in range(offsets):
                         lengths[step, b, b_on] = edge_length(
-                            delta_d, ground.across[b, b_on], ground.bends[i, p, step]
+                            delta_d, grid.across[b, b_on], grid.squared_steps[i, p, step]
                         )
             for k in range(bins):
                 for b in range(offsets):
@@ -131,8 +131,8 @@ def _programme(ground, yaw_steps, ahead, width, weight, ceiling, before, path):
                     if so_far == np.inf:
                         continue
                     for step in range(steps):
-                        on = ground.successors[p, step]
-                        if on < 0 or not ground.allowed[i + 1, on]:
+                        on = grid.successors[p, step]
+                        if on < 0 or not grid.allowed[i + 1, on]:
                             continue
                         turned = yaw[p, k, b] + yaw_steps[i, p, step]
                         k_on = math.floor(turned / width + 0.5) + half
@@ -141,7 +141,7 @@ def _programme(ground, yaw_steps, ahead, width, weight, ceiling, before, path):
                         for b_on in range(offsets):
                             total = so_far + lengths[step, b, b_on]
                             if total < new_cost[on, k_on, b_on] and not (
-                                len(ground.barred) and is_barred(ground.barred, i, b, p, b_on, on)
+                                len(grid.refused) and is_refused(grid.refused, i, b, p, b_on, on)
                             ):
                                 new_cost[on, k_on, b_on] = total
                                 new_yaw[on, k_on, b_on] = turned
@@ -155,26 +155,24 @@ def _programme(ground, yaw_steps, ahead, width, weight, ceiling, before, path):
                     if least == np.inf or least > ceiling:
                         continue
                     queries += 1
-                    _turned(ground, new_yaw[p, k, b], quat)
+                    _turned(grid, new_yaw[p, k, b], quat)
                     clearance = np.inf
                     if not free:
                         clearance = clearance_at(
-                            ground.obstacles, ground.frames[i + 1, p], ground.places[i + 1, b],
-                            ground.centers[i + 1, p], quat, room,
+                            grid.obstacles, grid.frames[i + 1, p], grid.places[i + 1, b],
+                            grid.centers[i + 1, p], quat, workspace,
                         )  # fmt: skip
                     if clearance > 0.0:
-                        new_cost[p, k, b] = arrival + node_cost(
-                            ground.numbers, clearance, i + 1 < m
-                        )
+                        new_cost[p, k, b] = arrival + node_cost(grid, clearance, i + 1 < m)
         cost, new_cost = new_cost, cost
         yaw, new_yaw = new_yaw, yaw
     best, end = np.inf, -1
-    b, p = ground.origin
+    b, p = grid.origin
     for k in range(bins):
         total = cost[p, k, b]
-        if ground.numbers[REACH] > 0.0 and total < np.inf:
-            _turned(ground, yaw[p, k, b], quat)
-            total += weight * max(0.0, angle_to(quat, ground.goal) - CLOSE_ENOUGH)
+        if grid.reach_attitude and total < np.inf:
+            _turned(grid, yaw[p, k, b], quat)
+            total += weight * max(0.0, angle_to(quat, grid.goal) - FREE_ATTITUDE_ERROR)
         if total < best and total <= ceiling:
             best, end = total, (p * bins + k) * offsets + b
     if best < np.inf:
@@ -186,6 +184,6 @@ def _programme(ground, yaw_steps, ahead, width, weight, ceiling, before, path):
 
 
 @njit
-def _turned(ground, yaw, quat):
+def _turned(grid, yaw, quat):
     """Attitude of the base, turned in its plane by `yaw` since the start."""
-    compose(ground.start, np.array([0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)]), quat)
+    compose(grid.start, np.array([0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)]), quat)

@@ -17,8 +17,8 @@ from matplotlib.axes import Axes
 
 import ffsr_plan as fp
 from benchmarks.random_scenes import FIRST_SEED, RESULTS, Case, cases, publish, table
-from ffsr_plan.search.optimum import lattice_optimum
-from ffsr_plan.search.records import Watch
+from ffsr_plan.lattice.optimum import lattice_optimum
+from ffsr_plan.search.records import SearchMonitor
 
 DELTA = 2.0
 SCENES = 4
@@ -42,7 +42,9 @@ def descend(planner: fp.AntSystem | fp.MaxMinAntSystem, case: Case, seed: int) -
     """Run one search with stamps."""
     roadmap, stamps = fp.Roadmap(case.roadmap.problem), []
     begin = time.process_time()
-    watch = Watch(on_cycle=lambda cycle: stamps.append((time.process_time() - begin, cycle.best)))
+    watch = SearchMonitor(
+        on_cycle=lambda cycle: stamps.append((time.process_time() - begin, cycle.best))
+    )
     planner.search(roadmap, np.random.default_rng(seed), watch)
     times, best = np.array(stamps).T
     return Descent(times, np.maximum(best / case.optimum - 1.0, 0.0))

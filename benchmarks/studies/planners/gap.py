@@ -52,7 +52,7 @@ class Runs(NamedTuple):
 
 def run(planner: fp.AntSystem | fp.MaxMinAntSystem, case: Case, seed: int) -> tuple[float, ...]:
     """Gap, CPU seconds and cycles to 0.1 % of one search; infinite where there is none."""
-    roadmap = case.roadmap.forget()
+    roadmap = case.roadmap.without_edge_states()
     begin = time.process_time()
     try:
         found = planner.search(roadmap, np.random.default_rng(seed))

@@ -16,7 +16,7 @@ import numpy as np
 
 import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, Case, publish, table
-from ffsr_plan.search.optimum import lattice_optimum
+from ffsr_plan.lattice.optimum import lattice_optimum
 
 DEFAULT = fp.AntSystem()
 VALUES = {
@@ -55,7 +55,7 @@ def attempt(case: Case, parameter: str, value: float, runs: int) -> Trial:
     planner = fp.AntSystem(**{parameter: value})
     curves, stagnated = [], 0
     for seed in range(runs):
-        found = planner.search(case.roadmap.forget(), np.random.default_rng(seed))
+        found = planner.search(case.roadmap.without_edge_states(), np.random.default_rng(seed))
         curves.append(np.maximum(found.history.best / case.optimum - 1.0, 0.0))
         stagnated += int(found.history.distinct[-1] == 1)
     return Trial(parameter, value, curves, stagnated)
@@ -134,7 +134,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=RESULTS, help="directory")
     args = parser.parse_args()
     roadmap = fp.Roadmap(fp.load_scenario(args.scenario))
-    case = Case(0, roadmap, roadmap.objective(lattice_optimum(roadmap.forget())))
+    case = Case(0, roadmap, roadmap.objective(lattice_optimum(roadmap.without_edge_states())))
     trials = [
         attempt(case, parameter, value, args.runs)
         for parameter, values in VALUES.items()

@@ -12,13 +12,14 @@ from ffsr_plan.core.checks import number, whole_number
 from ffsr_plan.core.errors import PlanningError
 from ffsr_plan.core.kernels import call
 from ffsr_plan.lattice.roadmap import Roadmap
-from ffsr_plan.search.records import Cycle, History, Search, Trails, Watch
+from ffsr_plan.search.lattice_planner import LatticePlanner
+from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
 
 _FAINT = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
 
 
 @dataclass(frozen=True)
-class AntSystem:
+class AntSystem(LatticePlanner):
     """The paper's planner.
 
     An ant on node p chooses node q of the next layer with probability proportional to
@@ -61,14 +62,14 @@ class AntSystem:
             object.__setattr__(self, field, value)
 
     def search(
-        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
-    ) -> Search:
+        self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None
+    ) -> SearchResult:
         """Run the colony.
 
         Raises:
             NoPath: proven, when every way on from the start has been refused.
         """
-        watch = watch or Watch()
+        monitor = monitor or SearchMonitor()
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
         roadmap.prove_obvious()
         walk = Walk(self, roadmap, rng)
@@ -96,11 +97,13 @@ class AntSystem:
                 np.add.at(walked, edges, 1)
                 distinct = len(np.unique(paths, axis=0))
                 records.append((best, float(costs[leader]), float(np.mean(costs)), distinct))
-                if watch.on_cycle is not None:
+                if monitor.on_cycle is not None:
                     counts = np.zeros((m + 1, n), dtype=np.int64)
                     np.add.at(counts, (along, paths), 1)
-                    watch.on_cycle(Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau))
-                interrupted = watch.over() and distinct > 1 and cycle < self.cycles
+                    monitor.on_cycle(
+                        Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau)
+                    )
+                interrupted = monitor.expired() and distinct > 1 and cycle < self.cycles
                 if distinct == 1 or interrupted:
                     break
         except KeyboardInterrupt:
@@ -108,7 +111,9 @@ class AntSystem:
             if not records:
                 raise PlanningError("interrupted before the first cycle was done") from None
         trails = _trails(walked, laid, tau)
-        return Search(frozen(best_path), _history(records), trails, interrupted)
+        return SearchResult(
+            frozen(best_path), History.of_rows(np.array(records)), trails, interrupted
+        )
 
 
 class Walk:
@@ -154,16 +159,6 @@ class Walk:
                 raise roadmap.no_path() or PlanningError("the ants are lost")
             if not roadmap.free(layer, int(paths[ant, layer]), int(paths[ant, layer + 1])):
                 close_refused(layer, roadmap.status, self._ways, self._exits, self._changed)
-
-
-def _history(records: list[tuple[float, float, float, int]]) -> History:
-    best, iteration_best, mean, distinct = zip(*records, strict=True)
-    return History(
-        frozen(np.array(best)),
-        frozen(np.array(iteration_best)),
-        frozen(np.array(mean)),
-        frozen(np.array(distinct, dtype=np.int64)),
-    )
 
 
 def _trails(walked: IntArray, laid: Array, tau: Array) -> Trails:

@@ -12,18 +12,19 @@ from ffsr_plan.core.checks import number, truth, whole_number
 from ffsr_plan.core.errors import PlanningError
 from ffsr_plan.core.kernels import call
 from ffsr_plan.lattice.roadmap import Roadmap
-from ffsr_plan.search.records import Cycle, History, Search, Trails, Watch
+from ffsr_plan.search.lattice_planner import LatticePlanner
+from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
 
 if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colony runs
     from ffsr_plan.search.ants.max_min_kernels import State
 
 _LARGE = 100  # nodes a layer from which on pheromone lies on nodes, not on edges
 _TRAILS = 10_000  # edges whose trails are kept for pictures
-_BREATH = 16  # cycles between two looks at the clock
+_CYCLES_PER_TIME_CHECK = 16  # cycles between two checks of the time
 
 
 @dataclass(frozen=True)
-class MaxMinAntSystem:
+class MaxMinAntSystem(LatticePlanner):
     """A max-min ant system (Stuetzle and Hoos 2000) with local search: the default planner.
 
     What differs from the paper's colony: ants see what a node costs, not only how far it is
@@ -72,8 +73,8 @@ class MaxMinAntSystem:
             object.__setattr__(self, field, value)
 
     def search(
-        self, roadmap: Roadmap, rng: np.random.Generator, watch: Watch | None = None
-    ) -> Search:
+        self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None
+    ) -> SearchResult:
         """Run the colony.
 
         Raises:
@@ -83,19 +84,19 @@ class MaxMinAntSystem:
         from ffsr_plan.search.ants import max_min_kernels as kernel
         from ffsr_plan.search.ants.open_edges import open_ways
 
-        watch = watch or Watch()
+        monitor = monitor or SearchMonitor()
         roadmap.prove_obvious()
         ways, exits = open_ways(roadmap.admissible, roadmap.status)
         state = self._state(roadmap, ways)
-        until, breath = 0, 1 if watch.on_cycle is not None else _BREATH
+        until, stride = 0, 1 if monitor.on_cycle is not None else _CYCLES_PER_TIME_CHECK
         interrupted = False
         try:
             while until < self.cycles and not interrupted:
-                until = min(until + breath, self.cycles)
+                until = min(until + stride, self.cycles)
                 self._run_until(until, rng, roadmap, state, exits)
-                if watch.on_cycle is not None:
-                    watch.on_cycle(_report(state, self.cycles))
-                interrupted = watch.over() and until < self.cycles
+                if monitor.on_cycle is not None:
+                    monitor.on_cycle(_report(state, self.cycles))
+                interrupted = monitor.expired() and until < self.cycles
         except KeyboardInterrupt:
             interrupted = True
         if not np.isfinite(state.values[kernel.BEST]):
@@ -104,14 +105,9 @@ class MaxMinAntSystem:
                 "cycles, which does not mean that there is none: more cycles may find it"
             )
         done = state.records[: state.clock[kernel.CYCLE]]
-        history = History(
-            frozen(done[:, 0].copy()),
-            frozen(done[:, 1].copy()),
-            frozen(done[:, 2].copy()),
-            frozen(done[:, 3].astype(np.int64)),
-        )
+        history = History.of_rows(done)
         trails = _trails(state)
-        return Search(frozen(state.best_path), history, trails, interrupted)
+        return SearchResult(frozen(state.best_path), history, trails, interrupted)
 
     def _run_until(
         self,

@@ -1,8 +1,8 @@
 """Annealing of a path through base offsets and postures by shifts of whole segments; compiled.
 
-A shift turns all that comes behind its segment about one axis by one angle. So lengths and the
-attitude at the goal are known from the segment alone, and by how much a clearance behind it can
-have changed is bounded by that angle: most shifts are refused before any distance is asked for.
+A shift rotates the rest of the path behind its segment about one axis by one angle. Lengths and the
+attitude at the goal follow from the segment alone, and the angle bounds the change of the
+clearances behind it, so that most shifts are rejected before any distance is computed.
 """
 
 from __future__ import annotations
@@ -14,26 +14,26 @@ from numba import njit
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.search.postures.cost_kernels import (
-    COLLISION,
-    Course,
-    Ground,
-    Room,
+    COLLISION_COST,
+    CostedPath,
+    PostureGrid,
+    Workspace,
     angle_to,
+    attitude_cost,
     compose,
-    missed_cost,
+    new_workspace,
     node_cost,
     path_cost,
     take_edges,
     visit,
-    working_room,
 )
 
 
 @njit(cache=True, nogil=True)
-def blank_course(path: IntArray) -> Course:
-    """A course along a path (m + 1, 2), nothing worked out."""
+def uncosted_path(path: IntArray) -> CostedPath:
+    """A current along a path (m + 1, 2), nothing worked out."""
     m = len(path) - 1
-    return Course(
+    return CostedPath(
         path.copy(),
         np.zeros(m),
         np.zeros((m + 1, 4)),
@@ -44,41 +44,41 @@ def blank_course(path: IntArray) -> Course:
 
 
 @njit(cache=True, nogil=True)
-def least_cost(numbers: Array, clearance: float, change: float, inner: bool) -> float:
+def least_cost(grid: PostureGrid, clearance: float, change: float, inner: bool) -> float:
     """The least that a node may cost [m] whose clearance changes by `change` at most."""
-    cost = node_cost(numbers, clearance + change, inner)
-    return cost if clearance + change <= 0.0 else min(COLLISION, cost)
+    cost = node_cost(grid, clearance + change, inner)
+    return cost if clearance + change <= 0.0 else min(COLLISION_COST, cost)
 
 
 @njit(cache=True, nogil=True)
 def trial_cost(
-    ground: Ground,
-    course: Course,
-    trial: Course,
+    grid: PostureGrid,
+    current: CostedPath,
+    trial: CostedPath,
     first: int,
     last: int,
     weight: float,
     limit: float,
-    room: Room,
+    workspace: Workspace,
 ) -> float:
     """Cost [m] of a path that differs from another one on the layers first .. last - 1.
 
     Args:
-        ground: the lattice.
-        course: the path as it is.
+        grid: the lattice.
+        current: the path as it is.
         trial: the new one, of which only the nodes are given; worked out from `first` on, but for
             lengths that do not change.
         first: the first layer that differs.
         last: the first layer behind these.
         weight: of a radian by which the goal attitude is missed [m].
         limit: a cost above it is infinite [m].
-        room: to work in.
+        workspace: to work in.
     """
-    m = len(course.nodes) - 1
-    trial.quats[first - 1] = course.quats[first - 1]
-    if not take_edges(ground, trial, first - 1, last):
+    m = len(current.nodes) - 1
+    trial.quats[first - 1] = current.quats[first - 1]
+    if not take_edges(grid, trial, first - 1, last):
         return np.inf
-    old, new, numbers = course.quats, trial.quats, ground.numbers
+    old, new = current.quats, trial.quats
     spin = angle_to(old[last], new[last])
     if spin > 0.0:  # what comes behind is turned in the world by one rotation
         back, turn = np.empty(4), np.empty(4)
@@ -88,32 +88,32 @@ def trial_cost(
             compose(turn, old[i], new[i])
     else:
         new[last:] = old[last:]
-    total = missed_cost(numbers, new[m], ground.goal, weight)
+    total = attitude_cost(grid, new[m], weight)
     for i in range(m):
-        total += trial.lengths[i] if first - 1 <= i < last else course.lengths[i]
+        total += trial.lengths[i] if first - 1 <= i < last else current.lengths[i]
     for i in range(1, first):
-        total += course.costs[i]
+        total += current.costs[i]
     trial.least[first:last] = 0.0
     for i in range(last, m + 1):
-        change = spin * ground.reach[i, course.nodes[i, 1]]
-        trial.least[i] = least_cost(numbers, course.clearances[i], change, i < m)
+        change = spin * grid.radii[i, current.nodes[i, 1]]
+        trial.least[i] = least_cost(grid, current.clearances[i], change, i < m)
         total += trial.least[i]
     if total > limit:
         return np.inf
     if spin > 0.0:
-        return visit(ground, trial, first, m + 1, total, limit, room)
-    trial.clearances[last:], trial.costs[last:] = course.clearances[last:], course.costs[last:]
-    return visit(ground, trial, first, last, total, limit, room)
+        return visit(grid, trial, first, m + 1, total, limit, workspace)
+    trial.clearances[last:], trial.costs[last:] = current.clearances[last:], current.costs[last:]
+    return visit(grid, trial, first, last, total, limit, workspace)
 
 
 @njit(cache=True, nogil=True)
-def adopt(course: Course, trial: Course, first: int, last: int) -> None:
-    """Make the trial the course."""
-    course.nodes[first:last] = trial.nodes[first:last]
-    course.lengths[first - 1 : last] = trial.lengths[first - 1 : last]
-    course.quats[first:] = trial.quats[first:]
-    course.clearances[first:] = trial.clearances[first:]
-    course.costs[first:] = trial.costs[first:]
+def adopt(current: CostedPath, trial: CostedPath, first: int, last: int) -> None:
+    """Make the trial the current."""
+    current.nodes[first:last] = trial.nodes[first:last]
+    current.lengths[first - 1 : last] = trial.lengths[first - 1 : last]
+    current.quats[first:] = trial.quats[first:]
+    current.clearances[first:] = trial.clearances[first:]
+    current.costs[first:] = trial.costs[first:]
 
 
 @njit(cache=True, nogil=True)
@@ -144,7 +144,7 @@ def shift(
             moved[i, 0] = neighbours[nodes[i, 0], kind - 2 * axes]
             if moved[i, 0] < 0:
                 return False
-    else:  # room for a step here is taken from there
+    else:  # shift the segment by one layer
         when = -1 if kind == 2 * axes + beside else 1
         for i in range(first, last):
             moved[i] = nodes[i + when]
@@ -153,7 +153,7 @@ def shift(
 
 @njit(cache=True, nogil=True)
 def anneal(
-    ground: Ground,
+    grid: PostureGrid,
     rng: np.random.Generator,
     path: IntArray,
     iterations: int,
@@ -165,7 +165,7 @@ def anneal(
     """Shift whole segments of a path by one, along an axis or in time, as the temperature falls.
 
     Args:
-        ground: the lattice.
+        grid: the lattice.
         rng: source of randomness.
         path: (m + 1, 2) base offset and posture on each layer.
         iterations: shifts to try.
@@ -178,33 +178,33 @@ def anneal(
     Returns:
         The cost of the best path [m].
     """
-    m, room = len(path) - 1, working_room()
-    successors, neighbours, axes = ground.successors, ground.neighbours, ground.indices.shape[1]
+    m, workspace = len(path) - 1, new_workspace()
+    successors, neighbours, axes = grid.successors, grid.neighbours, grid.indices.shape[1]
     kinds = 2 * axes + neighbours.shape[1] + 2
-    course, trial = blank_course(path), blank_course(path)
-    best, now, weight = path_cost(ground, course, weights[1]), np.inf, weights[0]
+    current, trial = uncosted_path(path), uncosted_path(path)
+    best, now, weight = path_cost(grid, current, weights[1]), np.inf, weights[0]
     best_path[:] = path
     for n in range(iterations):
         done = n / iterations
         if n % 64 == 0:
             weight = weights[0] * (weights[1] / weights[0]) ** min(1.0, 2.0 * done)
-            now = path_cost(ground, course, weight)  # rounding errors do not add up either
+            now = path_cost(grid, current, weight)  # rounding errors do not add up either
         heat = hot * (cold / hot) ** done
         length = int(math.exp(rng.random() * math.log(m)))
         first = 1 + int(rng.random() * (m - 1))
         last = min(first + length, m)
         kind = int(rng.random() * kinds)
-        if not shift(successors, neighbours, axes, course.nodes, trial.nodes, first, last, kind):
-            trial.nodes[first:last] = course.nodes[first:last]
+        if not shift(successors, neighbours, axes, current.nodes, trial.nodes, first, last, kind):
+            trial.nodes[first:last] = current.nodes[first:last]
             continue
         limit = now - heat * math.log(1.0 - rng.random())
-        cost = trial_cost(ground, course, trial, first, last, weight, limit, room)
+        cost = trial_cost(grid, current, trial, first, last, weight, limit, workspace)
         if cost == np.inf:
-            trial.nodes[first:last] = course.nodes[first:last]
+            trial.nodes[first:last] = current.nodes[first:last]
             continue
         now = cost
-        adopt(course, trial, first, last)
+        adopt(current, trial, first, last)
         if done >= 0.5 and cost < best:
             best = cost
-            best_path[:] = course.nodes
+            best_path[:] = current.nodes
     return best

@@ -1,8 +1,8 @@
-"""The last fraction of a degree: a small bend of the joint path that closes a missed attitude.
+"""Gauss-Newton correction of the final base attitude.
 
-The attitude at the end is the product of the turns of all joint steps. Its derivative by every
-inner corner, along every posture axis, comes from differences of the two steps beside the corner;
-of all bends that close the error to first order the least one is taken (Gauss-Newton).
+The attitude at the end is the product of the base rotations over all joint steps. Its derivative by
+every inner corner, along every posture axis, comes from differences of the two steps beside the
+corner; of all displacements that close the error to first order the least one is taken.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""The colony where the attitude at a node depends on the way there.
+"""Ant colony and annealing on a lattice where the attitude at a node depends on the path to it.
 
-Ants are guided by the cost to go at the nominal attitude, and lay pheromone on changes of the base
-offset and on posture steps, layer by layer. What they find is improved by shifting whole segments
-of a path; a longer annealing of such shifts ends the search. Every path is costed at the attitude
-that it really leads to.
+Ants follow the cost to go at the nominal attitude and lay pheromone on changes of the base offset
+and on posture steps, layer by layer. The best ant of a cycle is improved by shifts of whole
+segments; longer annealings of such shifts end the search. Every path is costed at the attitude that
+it really leads to.
 """
 
 from __future__ import annotations
@@ -12,204 +12,207 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.kernels import call
-from ffsr_plan.core.rotations import rotate, slerp
-from ffsr_plan.search.postures.annealing_kernels import anneal, blank_course
-from ffsr_plan.search.postures.cost_kernels import Ground, Obstacles, path_cost
+from ffsr_plan.core.rotations import slerp
+from ffsr_plan.search.postures.annealing_kernels import anneal, uncosted_path
+from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
+from ffsr_plan.search.postures.cost_kernels import PostureGrid, path_cost
+from ffsr_plan.search.postures.posture_grid import without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
-from ffsr_plan.search.postures.walk_kernels import cost_to_go, deposit, walk
-from ffsr_plan.search.records import Cycle, History, Watch
+from ffsr_plan.search.postures.walk_kernels import cost_to_go, lay_pheromone, walk
+from ffsr_plan.search.records import Cycle, History, SearchMonitor, Trails
 
-_KEEN = 0.15  # metres of detour that an ant takes e times less often
-_PERSISTENCE, _LEAST = 0.9, 0.02
-_SHIFTS = 200  # tried on the best ant of a cycle
-_PATIENCE = 30  # cycles without improvement that end the walking
-_ANNEALING = 3000  # shifts for each layer in an annealing, where the arms have to turn the base,
-_PASSING = 1000  # and where they need not loop
-_COLD = 1e-3
-_HEATS = ((1.0, 0.03), (1.0, _COLD), (0.3, _COLD))
-"""Temperatures [m] between which the annealings that end the search cool. Whether and how often the
-arms loop is settled hot, where the first one stays; the cooler ones polish."""
-_MISSED = np.array([5.0, 100.0])  # metres of cost for a radian of attitude missed, early and late
+_BEST_LAYS_EVERY = 3  # cycles; in the others the best ant of the cycle lays pheromone
+_LEAST_GAIN = 1e-9  # [m] by which a path has to be better to count as better
 
 
-class Found(NamedTuple):
-    """What the colony found."""
+class PosturePath(NamedTuple):
+    """The result of a colony.
+
+    Attributes:
+        path: (m + 1, 2) base offset and posture on each layer.
+        cost: cost of the path [m], with penalties for collision and for goal attitude error.
+        history: costs per cycle [m]; each annealing counts as one cycle.
+        trails: the changes of the base offset that ants walked.
+        interrupted: whether the time limit or Ctrl-C ended the search early.
+    """
 
     path: IntArray
-    """(m + 1, 2) base offset and posture on each layer."""
     cost: float
-    """In metres, with penalties if something collides or the goal attitude is missed."""
     history: History
-    """Costs per cycle [m]."""
-    walked: IntArray
-    """(m, b, b) ants on each change of the base offset, all cycles together."""
+    trails: Trails
     interrupted: bool
 
 
-def ground_of(lattice: PostureLattice) -> Ground:
-    """The lattice as the ants see it, nothing barred."""
-    problem, base = lattice.problem, lattice.base
-    robot, tree, nominal = problem.robot, problem.scene.tree, base.nominal
-    places = nominal.positions[:, None] + base.offsets
-    if nominal.mode.floats:  # the centre of mass, at rest
-        center = rotate(problem.start[3:7], lattice.centers[0, lattice.origin])
-        places = np.broadcast_to(problem.start[:3] + center, places.shape)
-    cap = np.inf if problem.clearance_cap is None else problem.clearance_cap
-    near = problem.delta * problem.length_unit**2
-    arrays = (
-        lattice.frames, places, lattice.centers,
-        (base.distances * problem.position_weight) ** 2, lattice.indices, lattice.successors,
-        lattice.bends, lattice.turns, lattice.allowed, np.zeros((0, 5), dtype=np.int64),
-        _beside(base.indices), np.array([base.origin, lattice.origin]), problem.start[3:7],
-        problem.goal[3:7], np.array([near, cap, problem.delta_d, float(problem.reach_attitude)]),
-        _reach(lattice),
-    )  # fmt: skip
-    kinds = np.array(robot.primitives.kinds)
-    obstacles = Obstacles(np.array(tree.nodes), tree.children.copy(), tree.spheres.copy(), kinds)
-    return Ground(obstacles, *(np.array(a, order="C") for a in arrays))
+class PostureColony:
+    """Ants and annealing on one lattice.
 
+    Attributes:
+        grid: the lattice as arrays, with the edges refused so far.
+        best: (m + 1, 2) the best path so far.
+        best_cost: its cost [m].
+    """
 
-def search(
-    lattice: PostureLattice,
-    ground: Ground,
-    ants: int,
-    cycles: int,
-    pheromone: bool,
-    rng: np.random.Generator,
-    watch: Watch,
-) -> Found:
-    """Send out the ants, then anneal the best path. Ctrl-C and the time limit end it early."""
-    m, count, steps = ground.turns.shape[:3]
-    offsets_count = len(ground.across)
-    ahead = call(cost_to_go, ground, _nominal(lattice))
-    tau = np.ones((m, offsets_count, offsets_count))
-    tau_posture = np.ones((m, count, steps))
-    best = np.tile(ground.origin, (m + 1, 1))
-    best_cost = cost_of(ground, best)
-    records: list[tuple[float, float, float, int]] = []
-    stale, interrupted = 0, False
-    walked = np.zeros((m, offsets_count, offsets_count), dtype=np.int64)
-    layers = np.arange(m)
-    try:
-        for _ in range(cycles):
-            paths, costs = [], []
-            for _ in range(ants):
-                path = np.empty((m + 1, 2), dtype=np.int64)
-                if call(walk, ground, rng, ahead, _KEEN, tau, tau_posture, path):
-                    paths.append(path)
-                    walked[layers, path[:-1, 0], path[1:, 0]] += 1
-                    costs.append(cost_of(ground, path))
+    def __init__(
+        self,
+        lattice: PostureLattice,
+        grid: PostureGrid,
+        settings: AnnealingSettings,
+        rng: np.random.Generator,
+    ) -> None:
+        self._lattice, self._settings, self._rng = lattice, settings, rng
+        self.grid = grid
+        m, postures, steps = grid.step_rotations.shape[:3]
+        offsets = len(grid.across)
+        self._cost_to_go = call(cost_to_go, grid, _guiding_attitudes(lattice))
+        self._offset_pheromone = np.ones((m, offsets, offsets))
+        self._posture_pheromone = np.ones((m, postures, steps))
+        self._walked = np.zeros((m, offsets, offsets), dtype=np.int64)
+        self._laid = np.zeros((m, offsets, offsets))
+        self._records: list[tuple[float, float, float, int]] = []
+        self.best = np.tile(grid.origin, (m + 1, 1))
+        self.best_cost = self.cost(self.best)
+
+    def search(self, monitor: SearchMonitor) -> PosturePath:
+        """Run the ants, then the annealings. Ctrl-C and the monitor end both early."""
+        interrupted = False
+        try:
+            interrupted = self._run_ants(monitor) or self._run_annealings(monitor)
+        except KeyboardInterrupt:
+            interrupted = True
+        history = History.of_rows(np.array(self._records, dtype=np.float64))
+        return PosturePath(self.best, self.best_cost, history, self._trails(), interrupted)
+
+    def cost(self, path: IntArray) -> float:
+        """Cost of a path (m + 1, 2) [m]."""
+        weight = float(self._settings.attitude_weights[1])
+        return float(call(path_cost, self.grid, uncosted_path(path), weight))
+
+    def refuse(self, layer: int, path: IntArray) -> None:
+        """Exclude the edge by which a path (m + 1, 2) leaves a layer."""
+        self.grid = without_edge(self.grid, layer, path)
+
+    def annealed(
+        self, path: IntArray, shifts: int, hot: float, cold: float
+    ) -> tuple[IntArray, float]:
+        """The best path of an annealing from `path`, and its cost [m].
+
+        Args:
+            path: (m + 1, 2) base offset and posture on each layer.
+            shifts: number of segment shifts to try.
+            hot: temperature at the beginning [m].
+            cold: temperature at the end [m].
+        """
+        weights = np.array(self._settings.attitude_weights)
+        return self._shifted(path, shifts, hot, cold, weights)
+
+    def _shifted(
+        self, path: IntArray, shifts: int, hot: float, cold: float, weights: Array
+    ) -> tuple[IntArray, float]:
+        result = np.empty_like(path)
+        cost = call(anneal, self.grid, self._rng, path, shifts, hot, cold, weights, result)
+        return result, float(cost)
+
+    def _run_ants(self, monitor: SearchMonitor) -> bool:
+        """Run cycles until none improves the path any more; whether the monitor ended them."""
+        settings, stale = self._settings, 0
+        late_weights = np.full(2, settings.attitude_weights[1])
+        for _ in range(settings.cycles):
+            paths, costs = self._tours()
             if not paths:
                 break
             leader = paths[int(np.argmin(costs))]
-            improved, cost = _descended(ground, rng, leader)
+            improved, cost = self._shifted(
+                leader, settings.descent_shifts, 1e-3, 1e-4, late_weights
+            )
             stale += 1
-            if cost < best_cost - 1e-9:
-                best, best_cost, stale = improved, cost, 0
+            if cost < self.best_cost - _LEAST_GAIN:
+                self.best, self.best_cost, stale = improved, cost, 0
             distinct = len({path.tobytes() for path in paths})
-            records.append((best_cost, cost, float(np.mean(costs)), distinct))
-            if watch.on_cycle is not None:
-                nodes = [path[:, 0] * count + path[:, 1] for path in (best, *paths)]
-                counts = np.zeros((m + 1, offsets_count * count), dtype=np.int64)
-                np.add.at(counts, (np.arange(m + 1), np.array(nodes[1:])), 1)
-                unit = lattice.problem.length_unit
-                watch.on_cycle(
-                    Cycle(
-                        len(records), cycles, best_cost / unit, cost / unit,
-                        float(np.mean(costs)) / unit, distinct, nodes[0], counts, tau,
-                    )
-                )  # fmt: skip
-            if pheromone:
-                for trail in (tau, tau_posture):
-                    np.maximum(_PERSISTENCE * trail, _LEAST, out=trail)
-                leader = best if len(records) % 3 == 0 else improved
-                call(deposit, ground, 1.0 - _PERSISTENCE, leader, tau, tau_posture)
-            if stale >= _PATIENCE:
+            self._records.append((self.best_cost, cost, float(np.mean(costs)), distinct))
+            if monitor.on_cycle is not None:
+                monitor.on_cycle(self._cycle(paths))
+            if settings.pheromone:
+                best_lays = len(self._records) % _BEST_LAYS_EVERY == 0
+                self._lay(self.best if best_lays else improved)
+            if stale >= settings.patience:
                 break
-            if watch.over():
-                interrupted = True
-                break
-        if not interrupted:
-            shifts = m * (_ANNEALING if lattice.problem.reach_attitude else _PASSING)
-            for heats in _HEATS:
-                found, cost = annealed(ground, rng, best, shifts, *heats)
-                if cost < best_cost - 1e-9:
-                    best, best_cost = found, cost
-                records.append((best_cost, cost, cost, 1))
-                if watch.over():
-                    interrupted = True
-                    break
-    except KeyboardInterrupt:
-        interrupted = True
-    return Found(best, best_cost, _history(records), walked, interrupted)
+            if monitor.expired():
+                return True
+        return False
+
+    def _tours(self) -> tuple[list[IntArray], list[float]]:
+        """Paths of the ants that got to the goal, and their costs [m]."""
+        m, paths, costs = len(self._walked), [], []
+        layers = np.arange(m)
+        for _ in range(self._settings.ants):
+            path = np.empty((m + 1, 2), dtype=np.int64)
+            if call(
+                walk, self.grid, self._rng, self._cost_to_go, self._settings.detour_scale,
+                self._offset_pheromone, self._posture_pheromone, path,
+            ):  # fmt: skip
+                paths.append(path)
+                self._walked[layers, path[:-1, 0], path[1:, 0]] += 1
+                costs.append(self.cost(path))
+        return paths, costs
+
+    def _lay(self, path: IntArray) -> None:
+        rho, least = self._settings.rho, self._settings.least_pheromone
+        tables = self._offset_pheromone, self._posture_pheromone
+        for pheromone in tables:
+            np.maximum(rho * pheromone, least, out=pheromone)
+        call(lay_pheromone, self.grid, 1.0 - rho, path, *tables)
+        self._laid[np.arange(len(path) - 1), path[:-1, 0], path[1:, 0]] += 1.0 - rho
+
+    def _run_annealings(self, monitor: SearchMonitor) -> bool:
+        """Anneal the best path; whether the monitor ended that."""
+        problem = self._lattice.problem
+        shifts = len(self._walked) * self._settings.shifts_per_layer(problem.reach_attitude)
+        for hot, cold in self._settings.temperatures:
+            path, cost = self.annealed(self.best, shifts, hot, cold)
+            if cost < self.best_cost - _LEAST_GAIN:
+                self.best, self.best_cost = path, cost
+            self._records.append((self.best_cost, cost, cost, 1))
+            if monitor.expired():
+                return True
+        return False
+
+    def _trails(self) -> Trails:
+        """Where the ants moved the base; nothing where there is one base offset."""
+        if self._walked.shape[1] == 1:
+            return Trails.none()
+        layer, tail, head = edges = np.nonzero(self._walked)
+        pheromone = self._offset_pheromone[edges]
+        return Trails(layer, tail, head, self._walked[edges], self._laid[edges], pheromone)
+
+    def _cycle(self, paths: list[IntArray]) -> Cycle:
+        """The last cycle in terms of the lattice, F in units of length."""
+        postures, unit = len(self.grid.successors), self._lattice.problem.length_unit
+        best, *walked = (path[:, 0] * postures + path[:, 1] for path in (self.best, *paths))
+        counts = np.zeros((len(best), len(self.grid.across) * postures), dtype=np.int64)
+        np.add.at(counts, (np.arange(len(best)), np.array(walked)), 1)
+        best_cost, cost, mean, distinct = self._records[-1]
+        return Cycle(
+            number=len(self._records),
+            cycles=self._settings.cycles,
+            best=best_cost / unit,
+            iteration_best=cost / unit,
+            mean=mean / unit,
+            distinct=distinct,
+            path=best,
+            counts=counts,
+            pheromone=self._offset_pheromone,
+        )
 
 
-def _descended(ground: Ground, rng: np.random.Generator, path: IntArray) -> tuple[IntArray, float]:
-    """A path improved by shifts that lower its cost."""
-    found, late = np.empty_like(path), np.full(2, _MISSED[1])
-    cost = call(anneal, ground, rng, path, _SHIFTS, 1e-3, 1e-4, late, found)
-    return found, float(cost)
+def _guiding_attitudes(lattice: PostureLattice) -> Array:
+    """(m + 1, 4) attitudes at which the cost to go is worked out (xyzw).
 
-
-def annealed(
-    ground: Ground,
-    rng: np.random.Generator,
-    path: IntArray,
-    shifts: int,
-    hot: float,
-    cold: float = _COLD,
-) -> tuple[IntArray, float]:
-    """The best path that annealing from `path` comes across, and its cost [m]."""
-    found = np.empty_like(path)
-    cost = call(anneal, ground, rng, path, shifts, hot, cold, _MISSED, found)
-    return found, float(cost)
-
-
-def cost_of(ground: Ground, path: IntArray) -> float:
-    """Cost of a path (m + 1, 2) [m]."""
-    return float(call(path_cost, ground, blank_course(path), float(_MISSED[1])))
-
-
-def bar(ground: Ground, layer: int, path: IntArray) -> Ground:
-    """The same ground without one edge of a path."""
-    edge = [layer, *path[layer], *path[layer + 1]]
-    return ground._replace(barred=np.vstack([ground.barred, np.array([edge], dtype=np.int64)]))
-
-
-def _reach(lattice: PostureLattice) -> Array:
-    """(m + 1, n) how far the shapes reach from what the base turns about [m]."""
-    frames = lattice.frames
-    if not frames.shape[2]:
-        return np.zeros(frames.shape[:2])
-    places = np.linalg.norm(frames[..., 9:12] - lattice.centers[:, :, None], axis=-1)
-    return np.asarray(np.max(places + np.sum(frames[..., 12:15], axis=-1), axis=-1))
-
-
-def _nominal(lattice: PostureLattice) -> Array:
-    """(m + 1, 4) attitudes that guide the ants; on the way to the goal, if it is to be reached."""
+    The nominal ones, or those from start to goal where the goal attitude is to be reached.
+    """
     problem = lattice.problem
     if not problem.reach_attitude:
         return np.array(lattice.base.nominal.attitudes)
     progress = np.linspace(0.0, 1.0, problem.lattice.divisions + 1)
     return slerp(problem.start[3:7], problem.goal[3:7], progress)
-
-
-def _beside(indices: IntArray) -> IntArray:
-    """(b, 2 axes) the base offsets one step to either side along each axis, -1 where none is."""
-    number = {tuple(index): b for b, index in enumerate(indices.tolist())}
-    result = np.full((len(indices), 2 * indices.shape[1]), -1, dtype=np.int64)
-    for b, index in enumerate(indices.tolist()):
-        for axis in range(indices.shape[1]):
-            for side, change in enumerate((-1, 1)):
-                beside = list(index)
-                beside[axis] += change
-                result[b, 2 * axis + side] = number.get(tuple(beside), -1)
-    return result
-
-
-def _history(records: list[tuple[float, float, float, int]]) -> History:
-    table = np.array(records, dtype=np.float64).reshape(-1, 4)
-    best, iteration_best, mean, distinct = (frozen(c.copy()) for c in table.T)
-    return History(best, iteration_best, mean, frozen(distinct.astype(np.int64)))

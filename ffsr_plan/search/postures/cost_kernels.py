@@ -1,9 +1,9 @@
-"""What a path through base offsets and postures costs, attitude carried along; compiled.
+"""Compiled cost of a path through base offsets and postures, base rotation included.
 
-The attitude at a node is the product of the turns of all joint steps on the way there, so that a
-change anywhere changes everything behind it. Costs are in metres: F of Eq. 8 times its unit of
-length. Collisions and a missed goal attitude cost something instead of being forbidden, so that a
-search can pass through what it must leave again.
+The attitude at a node is the product of the base rotations over all joint steps before it, so that
+a change anywhere changes everything behind it. Costs are in metres: F of Eq. 8 times its unit of
+length. Collision and goal attitude error are penalised, not forbidden, so that a search can pass
+through paths that it has to leave again.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from ffsr_plan.collision.nearest_kernels import STACK_SIZE, nearest_sphere
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 
-COLLISION, DEEPER = 3.0, 15.0  # metres of cost for a collision, and for each metre of its depth
-CLOSE_ENOUGH = math.radians(0.5)  # error of the goal attitude that costs nothing
-NEAR, CAP, DELTA_D, REACH = range(4)
+COLLISION_COST = 3.0  # [m] of cost for a collision
+DEPTH_COST = 15.0  # [m] of cost for each metre of its depth
+FREE_ATTITUDE_ERROR = math.radians(0.5)  # error of the goal attitude that costs nothing
 
 
 class Obstacles(NamedTuple):
@@ -33,8 +33,8 @@ class Obstacles(NamedTuple):
     """(g,) of `Primitives`."""
 
 
-class Ground(NamedTuple):
-    """What the ants walk on: layers 0 .. m, base offsets b, postures n, steps k, shapes g."""
+class PostureGrid(NamedTuple):
+    """Lattice data for the compiled search: b base offsets, n postures, k steps, g shapes."""
 
     obstacles: Obstacles
     frames: Array
@@ -49,13 +49,13 @@ class Ground(NamedTuple):
     """(n, axes) of the postures."""
     successors: IntArray
     """(n, k)."""
-    bends: Array
+    squared_steps: Array
     """(m, n, k) squared length of joint steps [m^2]."""
-    turns: Array
+    step_rotations: Array
     """(m, n, k, 4) rotation of the base over joint steps."""
     allowed: Flags
     """(m + 1, n)."""
-    barred: IntArray
+    refused: IntArray
     """(r, 5) refused edges: layer, base offsets and postures at both ends."""
     neighbours: IntArray
     """(b, j) base offsets beside each, -1 where there is none."""
@@ -65,13 +65,21 @@ class Ground(NamedTuple):
     """(4,) attitude."""
     goal: Array
     """(4,) attitude; counts where it is to be reached."""
-    numbers: Array
-    """delta times the unit of length squared [m^2], clearance cap [m], delta_d [m], 1 to reach."""
-    reach: Array
-    """(m + 1, n) of the shapes, from what the base turns about [m]."""
+    clearance_weight: float
+    """delta times the unit of length squared [m^2]."""
+    clearance_cap: float
+    """[m], infinite where there is none."""
+    delta_d: float
+    """[m]."""
+    reach_attitude: bool
+    """Whether the goal attitude is to be reached."""
+    radii: Array
+    """(m + 1, n) largest distance of any point of the shapes from the centre of rotation [m]."""
+    queries: IntArray
+    """(1,) configurations whose distance was asked for so far; counted by the kernels."""
 
 
-class Room(NamedTuple):
+class Workspace(NamedTuple):
     """What a search for the nearest obstacle writes into."""
 
     frame: Array
@@ -80,7 +88,7 @@ class Room(NamedTuple):
     bounds: Array
 
 
-class Course(NamedTuple):
+class CostedPath(NamedTuple):
     """A path, and what its cost is made of."""
 
     nodes: IntArray
@@ -110,30 +118,36 @@ def step_between(indices: IntArray, tail: int, head: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def working_room() -> Room:
-    """Room to work in, for one thread."""
-    return Room(np.empty(15), np.zeros(3), np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE))
+def new_workspace() -> Workspace:
+    """Workspace to work in, for one thread."""
+    stack, bounds = np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE)
+    return Workspace(np.empty(15), np.zeros(3), stack, bounds)
 
 
 @njit(cache=True, nogil=True)
-def is_free(ground: Ground) -> bool:
+def is_free(grid: PostureGrid) -> bool:
     """Whether there is nothing to keep clear of, or nothing that would have to."""
-    return len(ground.obstacles.spheres) == 0 or len(ground.obstacles.kinds) == 0
+    return len(grid.obstacles.spheres) == 0 or len(grid.obstacles.kinds) == 0
 
 
 @njit(cache=True, nogil=True)
 def clearance_at(
-    obstacles: Obstacles, frames: Array, place: Array, center: Array, quat: Array, room: Room
+    obstacles: Obstacles,
+    frames: Array,
+    place: Array,
+    center: Array,
+    quat: Array,
+    workspace: Workspace,
 ) -> float:
     """Least distance [m] to any obstacle at a node and an attitude; for hulls, of their boxes.
 
     Args:
-        obstacles: of the ground.
+        obstacles: of the grid.
         frames: (g, 15) of the posture.
         place: (3,) of the base offset.
         center: (3,) of the posture.
         quat: (4,) attitude.
-        room: to work in.
+        workspace: to work in.
     """
     x, y, z, w = quat[0], quat[1], quat[2], quat[3]
     r = (
@@ -141,7 +155,7 @@ def clearance_at(
         (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
         (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
     )
-    frame, least, nearest = room.frame, np.inf, -1
+    frame, least, nearest = workspace.frame, np.inf, -1
     for g in range(len(frames)):
         own = frames[g]
         for a in range(3):
@@ -153,27 +167,27 @@ def clearance_at(
                 + r[a][2] * (own[11] - center[2])
             )
             frame[12 + a] = own[12 + a]
-        kind = obstacles.kinds[g]
+        kind, shift = obstacles.kinds[g], workspace.shift
         least, nearest = nearest_sphere(
-            obstacles, kind, frame, room.shift, least, nearest, room.stack, room.bounds
+            obstacles, kind, frame, shift, least, nearest, workspace.stack, workspace.bounds
         )
     return least
 
 
 @njit(cache=True, nogil=True)
-def node_cost(numbers: Array, clearance: float, inner: bool) -> float:
+def node_cost(grid: PostureGrid, clearance: float, inner: bool) -> float:
     """Cost [m] of a node: delta / d, or that of a collision."""
     if clearance <= 0.0:
-        return COLLISION - DEEPER * clearance
+        return COLLISION_COST - DEPTH_COST * clearance
     if not inner:
         return 0.0
-    return float(numbers[NEAR] / min(clearance, numbers[CAP]))
+    return grid.clearance_weight / min(clearance, grid.clearance_cap)
 
 
 @njit(cache=True, nogil=True)
-def edge_length(delta_d: float, across: float, bend: float) -> float:
+def edge_length(delta_d: float, across: float, squared_step: float) -> float:
     """d_pq of Eq. 6 [m], posture steps included; the latter two squared."""
-    return math.sqrt(delta_d * delta_d + across + bend)
+    return math.sqrt(delta_d * delta_d + across + squared_step)
 
 
 @njit(cache=True, nogil=True)
@@ -196,94 +210,104 @@ def angle_to(p: Array, q: Array) -> float:
 
 
 @njit(cache=True, nogil=True)
-def is_barred(barred: IntArray, layer: int, b: int, p: int, b_on: int, p_on: int) -> bool:
+def is_refused(refused: IntArray, layer: int, b: int, p: int, b_on: int, p_on: int) -> bool:
     """Whether an edge has been refused."""
-    for k in range(len(barred)):
-        r = barred[k]
+    for k in range(len(refused)):
+        r = refused[k]
         if r[0] == layer and r[1] == b and r[2] == p and r[3] == b_on and r[4] == p_on:
             return True
     return False
 
 
 @njit(cache=True, nogil=True)
-def missed_cost(numbers: Array, quat: Array, goal: Array, weight: float) -> float:
+def attitude_cost(grid: PostureGrid, quat: Array, weight: float) -> float:
     """Cost [m] of the attitude at the goal, a radian of error costing `weight` [m]."""
-    if numbers[REACH] == 0.0:
+    if not grid.reach_attitude:
         return 0.0
-    return weight * max(0.0, angle_to(quat, goal) - CLOSE_ENOUGH)
+    return weight * max(0.0, angle_to(quat, grid.goal) - FREE_ATTITUDE_ERROR)
 
 
 @njit(cache=True, nogil=True)
-def take_edges(ground: Ground, course: Course, first: int, last: int) -> bool:
-    """Work out the edges first .. last - 1 of a course; whether all of them are there.
+def take_edges(grid: PostureGrid, path: CostedPath, first: int, last: int) -> bool:
+    """Work out the edges first .. last - 1 of a path; whether all of them are there.
 
     The attitude on layer `first` is given; lengths and the attitudes behind are filled in.
     """
-    nodes, quats, turns, bends = course.nodes, course.quats, ground.turns, ground.bends
-    across, indices, allowed, barred = ground.across, ground.indices, ground.allowed, ground.barred
-    delta_d = ground.numbers[DELTA_D]
+    nodes, quats, step_rotations, squared_steps = (
+        path.nodes,
+        path.quats,
+        grid.step_rotations,
+        grid.squared_steps,
+    )
+    across, indices, allowed, refused = grid.across, grid.indices, grid.allowed, grid.refused
+    delta_d = grid.delta_d
     for i in range(first, last):
         b, p, b_on, p_on = nodes[i, 0], nodes[i, 1], nodes[i + 1, 0], nodes[i + 1, 1]
         step = step_between(indices, p, p_on)
-        if step < 0 or not allowed[i + 1, p_on] or is_barred(barred, i, b, p, b_on, p_on):
+        if step < 0 or not allowed[i + 1, p_on] or is_refused(refused, i, b, p, b_on, p_on):
             return False
-        course.lengths[i] = edge_length(delta_d, across[b, b_on], bends[i, p, step])
-        compose(quats[i], turns[i, p, step], quats[i + 1])
+        path.lengths[i] = edge_length(delta_d, across[b, b_on], squared_steps[i, p, step])
+        compose(quats[i], step_rotations[i, p, step], quats[i + 1])
     return True
 
 
 @njit(cache=True, nogil=True)
 def visit(
-    ground: Ground, course: Course, first: int, last: int, total: float, limit: float, room: Room
+    grid: PostureGrid,
+    path: CostedPath,
+    first: int,
+    last: int,
+    total: float,
+    limit: float,
+    workspace: Workspace,
 ) -> float:
     """Take the nodes on the layers first .. last - 1 at their attitudes, clearances filled in.
 
     Args:
-        ground: the lattice.
-        course: the path, of which `course.least` has already been counted in for these nodes.
+        grid: the lattice.
+        path: the path, of which `path.least` has already been counted in for these nodes.
         first: the first layer.
         last: the layer behind the last one.
         total: cost so far [m].
         limit: no further than where the cost exceeds it [m].
-        room: to work in.
+        workspace: to work in.
 
     Returns:
         The total with the nodes' costs in place of the least ones; infinite beyond the limit.
     """
     obstacles, frames, places, centers = (
-        ground.obstacles, ground.frames, ground.places, ground.centers,
+        grid.obstacles, grid.frames, grid.places, grid.centers,
     )  # fmt: skip
-    nodes, quats, numbers = course.nodes, course.quats, ground.numbers
-    free = is_free(ground)
+    nodes, quats = path.nodes, path.quats
+    free = is_free(grid)
     for i in range(first, last):
         b, p, clearance = nodes[i, 0], nodes[i, 1], np.inf
         if not free:
+            grid.queries[0] += 1
             clearance = clearance_at(
-                obstacles, frames[i, p], places[i, b], centers[i, p], quats[i], room
+                obstacles, frames[i, p], places[i, b], centers[i, p], quats[i], workspace
             )
-        course.clearances[i] = clearance
-        course.costs[i] = node_cost(numbers, clearance, i + 1 < len(nodes))
-        total += course.costs[i] - course.least[i]
+        path.clearances[i] = clearance
+        path.costs[i] = node_cost(grid, clearance, i + 1 < len(nodes))
+        total += path.costs[i] - path.least[i]
         if total > limit:
             return np.inf
     return total
 
 
 @njit(cache=True, nogil=True)
-def path_cost(ground: Ground, course: Course, weight: float) -> float:
-    """Cost [m] of a path, all of whose course is worked out; infinite if an edge is not there.
+def path_cost(grid: PostureGrid, path: CostedPath, weight: float) -> float:
+    """Cost [m] of a path, all of whose entries are worked out; infinite if an edge is not there.
 
     Args:
-        ground: the lattice.
-        course: the path; all but its nodes is filled in.
+        grid: the lattice.
+        path: the path; all but its nodes is filled in.
         weight: of a radian by which the goal attitude is missed [m].
     """
-    m, room = len(course.nodes) - 1, working_room()
-    course.quats[0] = ground.start
-    course.least[:] = 0.0
-    if not take_edges(ground, course, 0, m):
+    m, workspace = len(path.nodes) - 1, new_workspace()
+    path.quats[0] = grid.start
+    path.least[:] = 0.0
+    if not take_edges(grid, path, 0, m):
         return np.inf
-    total = np.sum(course.lengths) + missed_cost(
-        ground.numbers, course.quats[m], ground.goal, weight
-    )
-    return visit(ground, course, 1, m + 1, total, np.inf, room)
+    total = np.sum(path.lengths) + attitude_cost(grid, path.quats[m], weight)
+    return visit(grid, path, 1, m + 1, total, np.inf, workspace)

@@ -25,7 +25,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     problem, base = lattice.problem, lattice.base
     m, count = problem.lattice.divisions, len(base.offsets)
     nodes = np.zeros((m + 1, count))
-    if _origin_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
+    if origin_is_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets
         scene = problem.scene
         apart = np.full(places.shape[:2], np.inf)
@@ -41,7 +41,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     return max(float(costs[m, base.origin]), _turning_bound(lattice) / problem.length_unit)
 
 
-def _origin_inside(lattice: PostureLattice) -> bool:
+def origin_is_inside(lattice: PostureLattice) -> bool:
     """Whether the base origin lies inside a shape of the root link."""
     shapes = lattice.problem.robot.primitives
     for k in np.flatnonzero((shapes.links == 0) & shapes.exact):
@@ -61,8 +61,8 @@ def _turning_bound(lattice: PostureLattice) -> float:
     if not problem.reach_attitude:
         return 0.0
     there = lattice.successors >= 0
-    angles: Array = angle_between(IDENTITY, lattice.turns[:, there])
-    lengths = np.sqrt(problem.delta_d**2 + lattice.bends[:, there])
+    angles: Array = angle_between(IDENTITY, lattice.step_rotations[:, there])
+    lengths = np.sqrt(problem.delta_d**2 + lattice.squared_steps[:, there])
     rates = np.max(np.where(lengths > 0.0, angles / np.maximum(lengths, 1e-12), 0.0), initial=0.0)
     wanted = float(angle_between(problem.start[3:7], problem.goal[3:7])) - np.radians(1.0)
     return max(0.0, wanted / rates) if rates > 0.0 else 0.0

@@ -91,7 +91,7 @@ class PostureLattice:
         return np.broadcast_to(apart, self.joint_values.shape[:2])
 
     @cached_property
-    def turns(self) -> Array:
+    def step_rotations(self) -> Array:
         """(m, n, k, 4) rotation of the base over each joint step (xyzw), in its own axes."""
         layers = 1 if self.alike else len(self.joint_values) - 1
         m, n, k = len(self.joint_values) - 1, *self.successors.shape
@@ -114,7 +114,7 @@ class PostureLattice:
         return np.broadcast_to(found, (m, n, k, 4))
 
     @cached_property
-    def bends(self) -> Array:
+    def squared_steps(self) -> Array:
         """(m, n, k) squared length of each joint step beyond the nominal one, in Eq. 6 [m^2]."""
         problem = self.problem
         slides = problem.robot.prismatic

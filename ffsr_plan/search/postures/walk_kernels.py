@@ -9,48 +9,47 @@ from numba import njit
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.search.postures.cost_kernels import (
-    DELTA_D,
-    Ground,
+    PostureGrid,
     clearance_at,
     edge_length,
     is_free,
+    new_workspace,
     node_cost,
     step_between,
-    working_room,
 )
 
 
 @njit(cache=True, nogil=True)
-def cost_to_go(ground: Ground, nominal: Array) -> Array:
+def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
     """(m + 1, b, n) least cost [m] from each node to the goal, every layer at one attitude.
 
     Args:
-        ground: the lattice.
+        grid: the lattice.
         nominal: (m + 1, 4) the attitudes.
     """
-    m, count = len(ground.turns), len(ground.successors)
-    offsets, steps = len(ground.across), ground.successors.shape[1]
-    room, delta_d, free = working_room(), ground.numbers[DELTA_D], is_free(ground)
+    m, count = len(grid.step_rotations), len(grid.successors)
+    offsets, steps = len(grid.across), grid.successors.shape[1]
+    workspace, delta_d, free = new_workspace(), grid.delta_d, is_free(grid)
     ahead = np.full((m + 1, offsets, count), np.inf)
     own = np.empty((offsets, count))
     for i in range(m, -1, -1):
         for b in range(offsets):
             for p in range(count):
                 if i == m:
-                    goal = ground.origin[0] == b and ground.origin[1] == p
+                    goal = grid.origin[0] == b and grid.origin[1] == p
                     ahead[m, b, p] = 0.0 if goal else np.inf
                     continue
-                if not ground.allowed[i, p]:
+                if not grid.allowed[i, p]:
                     continue
                 for step in range(steps):
-                    on = ground.successors[p, step]
+                    on = grid.successors[p, step]
                     if on < 0:
                         continue
                     for b_on in range(offsets):
                         rest = ahead[i + 1, b_on, on] + own[b_on, on]
                         if rest < ahead[i, b, p]:
                             length = edge_length(
-                                delta_d, ground.across[b, b_on], ground.bends[i, p, step]
+                                delta_d, grid.across[b, b_on], grid.squared_steps[i, p, step]
                             )
                             ahead[i, b, p] = min(ahead[i, b, p], rest + length)
         if i > 0:
@@ -58,54 +57,55 @@ def cost_to_go(ground: Ground, nominal: Array) -> Array:
                 for p in range(count):
                     own[b, p] = 0.0
                     if ahead[i, b, p] < np.inf and not free:
-                        frames, center = ground.frames[i, p], ground.centers[i, p]
+                        frames, center = grid.frames[i, p], grid.centers[i, p]
+                        grid.queries[0] += 1
                         clearance = clearance_at(
-                            ground.obstacles, frames, ground.places[i, b], center, nominal[i], room
+                            grid.obstacles, frames, grid.places[i, b], center, nominal[i], workspace
                         )
-                        own[b, p] = node_cost(ground.numbers, clearance, i < m)
+                        own[b, p] = node_cost(grid, clearance, i < m)
     return ahead
 
 
 @njit(cache=True, nogil=True)
 def walk(
-    ground: Ground,
+    grid: PostureGrid,
     rng: np.random.Generator,
     ahead: Array,
-    keen: float,
+    detour_scale: float,
     tau_offset: Array,
     tau_posture: Array,
     path: IntArray,
 ) -> bool:
     """One ant's path from start to goal; whether it got there.
 
-    A step is chosen with probability tau exp(-(length + cost to go from there) / keen): what a step
-    costs more than the best one weighs, not how long it is.
+    A step is chosen with probability tau exp(-(length + cost to go behind it) / detour_scale): the
+    excess over the best step counts, not the length of the step.
 
     Args:
-        ground: the lattice.
+        grid: the lattice.
         rng: source of randomness.
         ahead: (m + 1, b, n) of `cost_to_go`.
-        keen: [m].
+        detour_scale: [m].
         tau_offset: (m, b, b) pheromone of each change of the base offset.
         tau_posture: (m, n, k) pheromone of each posture step.
         path: (m + 1, 2) base offset and posture on each layer, filled in.
     """
-    m, steps, count = len(ground.turns), ground.successors.shape[1], len(ground.across)
-    wheel, delta_d = np.empty(steps * count), ground.numbers[DELTA_D]
-    path[0] = ground.origin
+    m, steps, count = len(grid.step_rotations), grid.successors.shape[1], len(grid.across)
+    wheel, delta_d = np.empty(steps * count), grid.delta_d
+    path[0] = grid.origin
     for i in range(m):
         b, p = path[i, 0], path[i, 1]
         least = ahead[i, b, p]
         total = 0.0
         for step in range(steps):
-            on = ground.successors[p, step]
+            on = grid.successors[p, step]
             for b_on in range(count):
                 weight = 0.0
                 if on >= 0 and ahead[i + 1, b_on, on] < np.inf:
-                    bend = ground.bends[i, p, step]
-                    cost = edge_length(delta_d, ground.across[b, b_on], bend)
+                    squared_step = grid.squared_steps[i, p, step]
+                    cost = edge_length(delta_d, grid.across[b, b_on], squared_step)
                     cost += ahead[i + 1, b_on, on]
-                    weight = math.exp(-min(max(cost - least, 0.0) / keen, 500.0))
+                    weight = math.exp(-min(max(cost - least, 0.0) / detour_scale, 500.0))
                     weight *= tau_offset[i, b, b_on] * tau_posture[i, p, step]
                 total += weight
                 wheel[step * count + b_on] = total
@@ -113,14 +113,16 @@ def walk(
             return False
         chosen = int(np.searchsorted(wheel, rng.random() * total, side="right"))
         chosen = min(chosen, len(wheel) - 1)
-        path[i + 1, 0], path[i + 1, 1] = chosen % count, ground.successors[p, chosen // count]
+        path[i + 1, 0], path[i + 1, 1] = chosen % count, grid.successors[p, chosen // count]
     return True
 
 
 @njit(cache=True, nogil=True)
-def deposit(ground: Ground, amount: float, path: IntArray, tau: Array, tau_posture: Array) -> None:
+def lay_pheromone(
+    grid: PostureGrid, amount: float, path: IntArray, tau: Array, tau_posture: Array
+) -> None:
     """Lay pheromone along a path (m + 1, 2)."""
     for i in range(len(path) - 1):
         b, p = path[i, 0], path[i, 1]
         tau[i, b, path[i + 1, 0]] += amount
-        tau_posture[i, p, step_between(ground.indices, p, path[i + 1, 1])] += amount
+        tau_posture[i, p, step_between(grid.indices, p, path[i + 1, 1])] += amount

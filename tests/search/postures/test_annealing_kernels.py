@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.search.postures import colony
-from ffsr_plan.search.postures.annealing_kernels import anneal, blank_course, shift, trial_cost
-from ffsr_plan.search.postures.cost_kernels import path_cost, working_room
+from ffsr_plan.search.postures.annealing_kernels import anneal, shift, trial_cost, uncosted_path
+from ffsr_plan.search.postures.cost_kernels import new_workspace, path_cost
+from ffsr_plan.search.postures.posture_grid import posture_grid, without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from tests.helpers.spatial_robot import spatial_problem
 
@@ -38,38 +38,40 @@ PROBLEMS = {
 @cache
 def ground_and_path(name):
     """A lattice and a path on it that wanders."""
-    ground = colony.ground_of(PostureLattice(PROBLEMS[name]()))
-    rng = np.random.default_rng(1)
-    start = np.tile(ground.origin, (len(ground.turns) + 1, 1))
-    path, _ = colony.annealed(ground, rng, start, 500, 5.0, 2.0)
-    return ground, path
+    lattice = PostureLattice(PROBLEMS[name]())
+    grid = posture_grid(lattice)
+    start = np.tile(grid.origin, (len(grid.step_rotations) + 1, 1))
+    path = np.empty_like(start)
+    rng, weights = np.random.default_rng(1), np.array([5.0, WEIGHT])
+    anneal(grid, rng, start, 500, 5.0, 2.0, weights, path)
+    return grid, path
 
 
-def shifts(ground, path, rng, count):
+def shifts(grid, path, rng, count):
     """(first, last, the nodes shifted) of random possible shifts."""
-    m, axes, trial = len(path) - 1, ground.indices.shape[1], path.copy()
-    kinds = 2 * axes + ground.neighbours.shape[1] + 2
+    m, axes, trial = len(path) - 1, grid.indices.shape[1], path.copy()
+    kinds = 2 * axes + grid.neighbours.shape[1] + 2
     while count:
         first, kind = int(rng.integers(1, m)), int(rng.integers(kinds))
         last = min(first + int(rng.integers(1, m)), m)
         trial[:] = path
-        if shift(ground.successors, ground.neighbours, axes, path, trial, first, last, kind):
+        if shift(grid.successors, grid.neighbours, axes, path, trial, first, last, kind):
             count -= 1
             yield first, last, trial.copy()
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_a_shift_costs_what_its_whole_path_costs_and_no_limit_above_that_refuses_it(name):
-    ground, path = ground_and_path(name)
-    course, room, told = blank_course(path), working_room(), 0
-    path_cost(ground, course, WEIGHT)
-    for first, last, nodes in shifts(ground, path, np.random.default_rng(2), 400):
-        whole = blank_course(nodes)
-        cost = path_cost(ground, whole, WEIGHT)
+    grid, path = ground_and_path(name)
+    current, workspace, told = uncosted_path(path), new_workspace(), 0
+    path_cost(grid, current, WEIGHT)
+    for first, last, nodes in shifts(grid, path, np.random.default_rng(2), 400):
+        whole = uncosted_path(nodes)
+        cost = path_cost(grid, whole, WEIGHT)
 
         def tried(limit, nodes=nodes, first=first, last=last):
-            trial = blank_course(nodes)
-            found = trial_cost(ground, course, trial, first, last, WEIGHT, limit, room)
+            trial = uncosted_path(nodes)
+            found = trial_cost(grid, current, trial, first, last, WEIGHT, limit, workspace)
             return found, trial
 
         if not np.isfinite(cost):
@@ -86,27 +88,29 @@ def test_a_shift_costs_what_its_whole_path_costs_and_no_limit_above_that_refuses
 
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_annealing_returns_the_cost_of_the_path_it_returns(name):
-    ground, path = ground_and_path(name)
+    grid, path = ground_and_path(name)
     rng, found = np.random.default_rng(3), np.empty_like(path)
     weights = np.array([WEIGHT, WEIGHT])
-    cost = anneal(ground, rng, path, 3000, 0.5, 1e-3, weights, found)
-    assert cost == pytest.approx(path_cost(ground, blank_course(found), WEIGHT), rel=1e-9)
-    assert cost <= path_cost(ground, blank_course(path), WEIGHT) * (1.0 + 1e-9)
+    cost = anneal(grid, rng, path, 3000, 0.5, 1e-3, weights, found)
+    assert cost == pytest.approx(path_cost(grid, uncosted_path(found), WEIGHT), rel=1e-9)
+    assert cost <= path_cost(grid, uncosted_path(path), WEIGHT) * (1.0 + 1e-9)
 
 
 def test_a_refused_edge_is_not_taken_again():
-    ground, path = ground_and_path("no obstacles")
+    grid, path = ground_and_path("no obstacles")
     layer = 10
-    barred = colony.bar(ground, layer, path)
-    assert path_cost(ground, blank_course(path), WEIGHT) < np.inf
-    assert path_cost(barred, blank_course(path), WEIGHT) == np.inf
+    refused = without_edge(grid, layer, path)
+    assert path_cost(grid, uncosted_path(path), WEIGHT) < np.inf
+    assert path_cost(refused, uncosted_path(path), WEIGHT) == np.inf
     aside = path.copy()
-    found, cost = colony.annealed(barred, np.random.default_rng(4), aside, 3000, 0.5)
+    found, rng = np.empty_like(path), np.random.default_rng(4)
+    weights = np.array([5.0, WEIGHT])
+    cost = anneal(refused, rng, aside, 3000, 0.5, 1e-3, weights, found)
     assert cost < np.inf
     assert not np.array_equal(found[layer : layer + 2], path[layer : layer + 2])
 
 
 def test_what_the_search_counts_is_the_objective_of_what_it_returns():
-    plan = fp.plan(fp.load_scenario("gate"), fp.MaxMinAntSystem(ants=5, cycles=5), seed=0)
+    plan = fp.plan(fp.load_scenario("gate"), fp.PostureAnnealing(ants=5, cycles=5), seed=0)
     assert plan.certificate.edges_refused == 0  # else the last search is not in the history
     assert plan.history.best[-1] == pytest.approx(plan.lattice_objective, rel=1e-9)

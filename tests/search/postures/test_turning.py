@@ -13,8 +13,8 @@ from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import robot_from_urdf
 from ffsr_plan.search.postures.attitude_correction import _slopes, corrected
 from ffsr_plan.search.postures.lower_bound import lower_bound
+from ffsr_plan.search.postures.path_proof import ATTITUDE_TOLERANCE
 from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
-from ffsr_plan.search.postures.posture_planner import REACHED
 from tests.helpers.spatial_robot import curvatures, spatial_problem
 from tests.helpers.turning_programme import turning_oracle
 
@@ -73,7 +73,7 @@ def test_the_arms_turn_the_base_to_the_goal_and_come_back(degrees, seed):
 def test_the_joint_path_is_within_5_percent_of_the_oracle(degrees, seed):
     plan, yaw = planned(degrees, seed), math.radians(degrees)
     assert plan.lattice_objective <= 1.05 * oracle().least(yaw)
-    assert plan.lattice_objective >= oracle().least(yaw, REACHED) * (1 - 1e-9)
+    assert plan.lattice_objective >= oracle().least(yaw, ATTITUDE_TOLERANCE) * (1 - 1e-9)
 
 
 @pytest.mark.parametrize("degrees", range(5, 80, 10))
@@ -93,7 +93,9 @@ def test_the_oracle_agrees_with_every_path_tried_on_a_tiny_lattice():
     axes = [fp.PostureAxis(dict(a.joints), 1, 0.9) for a in LATTICE.postures]
     problem = turning(10, fp.Lattice(4, postures=axes))
     lattice, m = PostureLattice(problem), 4
-    turns = 2.0 * np.arctan2(lattice.turns[0, ..., 2], lattice.turns[0, ..., 3])
+    step_rotations = 2.0 * np.arctan2(
+        lattice.step_rotations[0, ..., 2], lattice.step_rotations[0, ..., 3]
+    )
     found = []
 
     def extend(p, layer, length, yaw):
@@ -102,8 +104,8 @@ def test_the_oracle_agrees_with_every_path_tried_on_a_tiny_lattice():
             return
         for step, on in enumerate(lattice.successors[p]):
             if on >= 0 and lattice.allowed[0, on]:
-                edge = math.sqrt(lattice.bends[layer, p, step])
-                extend(on, layer + 1, length + edge, yaw + turns[p, step])
+                edge = math.sqrt(lattice.squared_steps[layer, p, step])
+                extend(on, layer + 1, length + edge, yaw + step_rotations[p, step])
 
     extend(lattice.origin, 0, 0.0, 0.0)
     lengths, yaws = np.array(found).T
@@ -153,7 +155,7 @@ def test_a_goal_that_the_arms_cannot_turn_to_is_refused_with_what_is_missing():
     reach = turning_oracle(problem, math.radians(0.1), math.radians(200)).farthest
     assert caught.value.wanted == pytest.approx(math.radians(120))
     short = caught.value.wanted - reach
-    assert REACHED < short <= caught.value.missed + 1e-9
+    assert ATTITUDE_TOLERANCE < short <= caught.value.missed + 1e-9
     assert caught.value.missed < short + 0.25 * reach
 
 
@@ -230,7 +232,7 @@ def test_steps_back_undo_steps_there():
     begin = lattice.joint_values[0, p]
     steps = lattice.joint_values[0, on] - begin
     alone = Reaction.of_segments(lattice.problem.robot, begin, steps).increments
-    assert np.max(rotations.angle_between(lattice.turns[0, p, step], alone)) < 1e-7
+    assert np.max(rotations.angle_between(lattice.step_rotations[0, p, step], alone)) < 1e-7
 
 
 @cache

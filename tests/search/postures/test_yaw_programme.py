@@ -11,11 +11,12 @@ from benchmarks.studies.attitude.yaw_programme import cheapest_way, coarse_to_fi
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.problem.objective import nearness
-from ffsr_plan.search.postures import colony
-from ffsr_plan.search.postures.annealing_kernels import blank_course
+from ffsr_plan.search.postures.annealing_kernels import uncosted_path
+from ffsr_plan.search.postures.colony import PostureColony
 from ffsr_plan.search.postures.cost_kernels import path_cost
+from ffsr_plan.search.postures.posture_grid import posture_grid, without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
-from ffsr_plan.search.records import Watch
+from ffsr_plan.search.records import SearchMonitor
 from tests.helpers.closed_forms import clearances
 
 REST = {"left_2": 0.8, "right_2": -0.8}
@@ -110,7 +111,7 @@ def test_the_programme_agrees_with_every_path_tried_on_a_tiny_lattice(degrees):
 def test_the_programmes_value_is_the_cost_of_its_path(degrees, bins):
     lattice = small(degrees)
     way = cheapest_way(lattice, bins)
-    again = colony.cost_of(colony.ground_of(lattice), way.path)
+    again = path_cost(posture_grid(lattice), uncosted_path(way.path), 100.0)
     assert again == pytest.approx(way.cost, rel=1e-12)
 
 
@@ -121,7 +122,9 @@ def test_the_colony_is_not_below_the_programme_by_more_than_bins_explain(degrees
     assert cheapest_way(lattice, 801).cost == pytest.approx(least, rel=2e-3)
     for seed in range(2):
         rng = np.random.default_rng(seed)
-        found = colony.search(lattice, colony.ground_of(lattice), 10, 20, True, rng, Watch())
+        settings = fp.PostureAnnealing(ants=10, cycles=20)
+        colony = PostureColony(lattice, posture_grid(lattice), settings, rng)
+        found = colony.search(SearchMonitor())
         assert least * (1 - 2e-3) <= found.cost <= 1.1 * least
 
 
@@ -141,23 +144,23 @@ def test_a_known_cost_spares_queries_and_changes_nothing(degrees):
 
 def test_no_path_costs_less_than_the_cost_to_go_of_the_base_origin():
     lattice = small(5)
-    ground = colony.ground_of(lattice)
-    ahead, m = least_to_go(lattice, ground), len(ground.turns)
+    grid = posture_grid(lattice)
+    ahead, m = least_to_go(lattice, grid), len(grid.step_rotations)
     assert ahead[0].max() > 2.0  # the way is two metres long
     for bins in (11, 41, 401):
         way = cheapest_way(lattice, bins)
-        course = blank_course(way.path)
-        total = path_cost(ground, course, 100.0)
-        costs = np.cumsum(np.append(0.0, course.lengths) + course.costs)
+        current = uncosted_path(way.path)
+        total = path_cost(grid, current, 100.0)
+        costs = np.cumsum(np.append(0.0, current.lengths) + current.costs)
         to_go = ahead[np.arange(m + 1), way.path[:, 0], way.path[:, 1]]
         assert np.all(to_go <= total - costs + 1e-12)
 
 
 def test_a_refused_edge_is_not_taken_again():
     lattice = small(5)
-    ground = colony.ground_of(lattice)
-    way = cheapest_way(lattice, 201, ground=ground)
-    barred = colony.bar(ground, 5, way.path)
-    other = cheapest_way(lattice, 201, ground=barred)
+    grid = posture_grid(lattice)
+    way = cheapest_way(lattice, 201, grid=grid)
+    refused = without_edge(grid, 5, way.path)
+    other = cheapest_way(lattice, 201, grid=refused)
     assert way.cost < other.cost < np.inf
     assert not np.array_equal(way.path[5:7], other.path[5:7])

@@ -16,9 +16,11 @@ from ffsr_plan.core.arrays import frozen
 from ffsr_plan.core.checks import finite_array, number, truth, whole_number
 from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
 from ffsr_plan.core.text_files import write_text
-from ffsr_plan.lattice.roadmap import Certificate
-from ffsr_plan.planning.plan import Plan
-from ffsr_plan.planning.planner import PLANNERS
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.plans.plan_data import PlanData
+from ffsr_plan.plans.planners import PLANNERS
 from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import Containers
@@ -26,14 +28,15 @@ from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.records import History, Trails
 
-FORMAT = "ffsr-plan/2"
+FORMAT = "ffsr-plan/3"
+_AGREEMENT = 1e-9  # [m, rad] between the motion and the configurations beside it
 _PLAIN = (
-    "mode", "delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight",
+    "delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight",
     "tolerance", "reach_attitude",
 )  # fmt: skip
 
 
-def to_dict(plan: Plan) -> dict[str, Any]:
+def to_dict(plan: PlanData) -> dict[str, Any]:
     """The plan in plain Python values.
 
     None stands for what is infinite: clearances in an empty scene, costs of cycles without a path.
@@ -51,11 +54,18 @@ def to_dict(plan: Plan) -> dict[str, Any]:
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),
             "lattice": dataclasses.asdict(problem.lattice),
+            "mode": problem.mode.value,
             **{name: getattr(problem, name) for name in _PLAIN},
         },
         "planner": {"name": plan.planner.name, **dataclasses.asdict(plan.planner)},
         "seed": plan.seed,
         "nodes": plan.nodes.tolist(),
+        "motion": {
+            "positions": plan.motion.positions.tolist(),
+            "joint_values": None
+            if plan.motion.joints_are_straight
+            else plan.motion.joint_values.tolist(),
+        },
         "configurations": plan.configurations.tolist(),
         "length": plan.length,
         "objective": plan.objective,
@@ -130,7 +140,7 @@ def _same_replacement(told: dict[str, Any], due: dict[str, Any]) -> bool:
     return kinds[0] == kinds[1] and abs(excess - due["excess"]) <= 1e-9 + 1e-6 * due["excess"]
 
 
-def from_dict(data: dict[str, Any]) -> Plan:
+def from_dict(data: dict[str, Any]) -> PlanData:
     """The inverse of `to_dict`."""
     given = data["problem"]
     settings = dict(data["planner"])
@@ -151,6 +161,7 @@ def from_dict(data: dict[str, Any]) -> Plan:
             normal=axes.get("normal"),
             postures=[_posture_axis(entry) for entry in lattice["postures"]],
         ),
+        mode=given["mode"],
         **{name: given[name] for name in _PLAIN},
     )
     history: dict[str, Any] = {
@@ -164,14 +175,13 @@ def from_dict(data: dict[str, Any]) -> Plan:
     }
     certificate = dict(data["certificate"])
     certificate["least_clearance"] = float(_with_infinity([certificate["least_clearance"]])[0])
-    return Plan(
+    return PlanData(
         problem=problem,
         planner=PLANNERS[settings.pop("name")](**settings),
         seed=data["seed"],
+        lattice=LayeredLattice(problem),
+        motion=_motion(problem, data),
         nodes=_whole(data["nodes"]),
-        configurations=finite_array(
-            "configurations of the plan", data["configurations"], (-1, problem.robot.model.nq)
-        ),
         length=data["length"],
         objective=data["objective"],
         lattice_objective=data["lattice_objective"],
@@ -185,20 +195,41 @@ def from_dict(data: dict[str, Any]) -> Plan:
     )
 
 
+def _motion(problem: Problem, data: dict[str, Any]) -> Motion:
+    """The motion; the configurations beside it are for other readers, and have to agree with it."""
+    corners, robot = problem.lattice.divisions + 1, problem.robot
+    positions, values = data["motion"]["positions"], data["motion"]["joint_values"]
+    motion = Motion(
+        robot,
+        problem.mode,
+        problem.start,
+        problem.goal,
+        finite_array("motion of the plan, positions", positions, (corners, 3)),
+        None
+        if values is None
+        else finite_array("motion of the plan, joint_values", values, (corners, robot.nd)),
+    )
+    what = "configurations of the plan"
+    stored = finite_array(what, data["configurations"], (corners, robot.model.nq))
+    if np.max(np.abs(stored - motion.configurations())) > _AGREEMENT:
+        raise InvalidInput(what, "others", "those of its motion")
+    return motion
+
+
 def _posture_axis(entry: dict[str, Any]) -> PostureAxis:
     if entry["posture"]:
         return PostureAxis.towards(entry["posture"], entry["levels"])
     return PostureAxis(dict(entry["joints"]), entry["half_count"], entry["spacing"])
 
 
-def write(plan: Plan, path: Path) -> None:
+def write(plan: PlanData, path: Path) -> None:
     """Write `path`; an unfinished file never takes its place."""
     data = to_dict(plan)
-    text = json.dumps({"sha256": _digest(data), **data}, allow_nan=False, indent=1)
+    text = json.dumps({"sha256": digest(data), **data}, allow_nan=False, indent=1)
     write_text("plan file", path, text)
 
 
-def read(path: Path) -> Plan:
+def read(path: Path) -> PlanData:
     """Read and check `path`; see `Plan.load`."""
     what = f"plan file '{path}'"
     try:
@@ -215,7 +246,7 @@ def read(path: Path) -> Plan:
         raise InvalidInput(what, str(error), "a plan file") from None
     _check_format(what, data)
     try:
-        unchanged = data.pop("sha256", None) == _digest(data)
+        unchanged = data.pop("sha256", None) == digest(data)
     except ValueError:  # not a number, which no plan file holds
         unchanged = False
     if not unchanged:
@@ -225,7 +256,7 @@ def read(path: Path) -> Plan:
     return checked(what, data)
 
 
-def checked(what: str, data: object) -> Plan:
+def checked(what: str, data: object) -> PlanData:
     """The plan of a dictionary, which may come from anywhere; `what` names it in errors.
 
     Raises:
@@ -250,12 +281,11 @@ def _check_format(what: str, data: object) -> dict[str, Any]:
     return data
 
 
-def _check_shapes(plan: Plan) -> None:
+def _check_shapes(plan: PlanData) -> None:
     """Raise `InvalidInput` where the arrays of a plan do not fit its problem."""
-    corners, nq = plan.problem.lattice.divisions + 1, plan.problem.robot.model.nq
+    corners = plan.problem.lattice.divisions + 1
     axes = len(plan.problem.lattice.axes) + len(plan.problem.lattice.postures)
     shapes = {
-        "configurations": (plan.configurations.shape, (corners, nq)),
         "clearances": (plan.clearances.shape, (corners,)),
         "nodes": (plan.nodes.shape, (corners, axes) if axes > 1 else (corners,)),
     }
@@ -270,7 +300,7 @@ def _check_shapes(plan: Plan) -> None:
             raise InvalidInput(f"{name} of the plan", sizes, "columns of one length")
 
 
-def _check_numbers(plan: Plan) -> None:
+def _check_numbers(plan: PlanData) -> None:
     """Raise `InvalidInput` for numbers that no planner gives, and nodes that the lattice lacks."""
     if plan.seed is not None:
         whole_number("seed of the plan", plan.seed, at_least=0)
@@ -303,7 +333,8 @@ def _check_numbers(plan: Plan) -> None:
                 )
 
 
-def _digest(data: dict[str, Any]) -> str:
+def digest(data: dict[str, Any]) -> str:
+    """SHA-256 of the canonical JSON text of a plan without its digest."""
     canonical = json.dumps(data, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(canonical.encode()).hexdigest()
 

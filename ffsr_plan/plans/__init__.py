@@ -1,0 +1,1 @@
+"""The data of a plan, its file, and the planners by name."""

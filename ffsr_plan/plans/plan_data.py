@@ -1,0 +1,133 @@
+"""`PlanData`: a plan's motion, figures of merit and certificate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.checks import finite_array
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.rotations import angle_between, to_angles
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.dynamics.wheel_momentum import WheelMomentum, wheel_momentum
+from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.plans.planners import Planner
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.search.records import History, Trails
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PlanData:
+    """A certified whole-body motion, and how it was found.
+
+    Attributes:
+        problem: what was planned.
+        planner: the planner's settings.
+        seed: the seed, or None if a generator was handed over.
+        lattice: the lattice that was searched, of base offsets.
+        motion: the motion that was proven free; `at` evaluates it.
+        nodes: offset indices along the path, 0 = no offset: (m + 1,), or (m + 1, axes) where the
+            lattice has several axes (lateral, normal, postures in this order).
+        length: L of Eq. 6 [m].
+        objective: F of Eq. 8 [length units].
+        lattice_objective: F of the path on the lattice, before refinement.
+        optimum: F of the exact lattice optimum; with posture axes a lower bound on it.
+        clearances: (m + 1,) least link-to-sphere distance at each node [m].
+        history: per cycle, best F, best and mean F of the cycle, number of different paths.
+        trails: the edges that ants walked, with ants and pheromone.
+        certificate: edges proven, Coal queries spent, proven clearance along the whole motion.
+        interrupted: whether Ctrl-C or the time limit ended the search early.
+        seconds: computing time [s].
+    """
+
+    problem: Problem
+    planner: Planner
+    seed: int | None
+    lattice: LayeredLattice
+    motion: Motion
+    nodes: IntArray
+    length: float
+    objective: float
+    lattice_objective: float
+    optimum: float
+    clearances: Array
+    history: History
+    trails: Trails
+    certificate: Certificate
+    interrupted: bool
+    seconds: float
+
+    @cached_property
+    def configurations(self) -> Array:
+        """(m + 1, nq) base poses in the world [m, quaternion xyzw] and joints at the nodes."""
+        return frozen(self.motion.configurations())
+
+    @property
+    def gap(self) -> float:
+        """(lattice_objective - optimum) / optimum: how far the search stayed above the optimum."""
+        above = self.lattice_objective - self.optimum
+        if above <= 0.0:
+            return 0.0
+        return above / self.optimum if self.optimum > 0.0 else np.inf
+
+    @property
+    def optimum_is_exact(self) -> bool:
+        """Whether `optimum` is the exact lattice optimum, and not only a lower bound on it.
+
+        With posture axes the cost of a node depends on the path that leads to it, and `gap` is the
+        distance from a bound that no path of the lattice falls below.
+        """
+        return not self.problem.lattice.postures
+
+    @property
+    def arrival_attitude(self) -> Array:
+        """(3,) ZYX angles alpha, beta, gamma [rad] of the base at the end of the motion."""
+        return to_angles(self.configurations[-1, 3:7])
+
+    @property
+    def arrival_attitude_error(self) -> float | None:
+        """Angle [rad] from the attitude reached to the goal's; None where none is demanded."""
+        if not self.problem.reach_attitude:
+            return None
+        return float(angle_between(self.configurations[-1, 3:7], self.problem.goal[3:7]))
+
+    def at(self, s: ArrayLike) -> Array:
+        """Configuration at path parameter `s`, the reaction of the base included.
+
+        Args:
+            s: a number from 0 to 1, or an array (N,) of them; node i is at i / m.
+
+        Returns:
+            (nq,), or (N, nq) for an array: base pose in the world [m, quaternion xyzw] and joints.
+
+        Raises:
+            InvalidInput: s outside [0, 1] or not finite.
+        """
+        parameter = finite_array("s", s, np.shape(s))
+        if np.any((parameter < 0.0) | (parameter > 1.0)):
+            raise InvalidInput("s", s, "path parameters from 0 to 1")
+        divisions = self.motion.edges
+        scaled = np.atleast_1d(parameter).ravel() * divisions
+        edge = np.minimum(scaled.astype(np.int64), divisions - 1)
+        q = self.motion.at(edge, scaled - edge)
+        return q.reshape(*parameter.shape, self.problem.robot.model.nq)
+
+    def wheel_momentum(self, duration: float, times: ArrayLike | None = None) -> WheelMomentum:
+        """Angular momentum that the wheels of an attitude-held plan must store along the motion.
+
+        The plan is a path; here it is flown from rest to rest by s = 10 u^3 - 15 u^4 + 6 u^5,
+        u = t / duration. All momenta go as 1 / duration, for any time law s(t) as ds/dt.
+
+        Args:
+            duration: of the whole motion [s].
+            times: (N,) from 0 to the duration [s]; without, 1001 evenly spaced.
+
+        Raises:
+            InvalidInput: another mode (there are no wheels), or a duration or times that cannot be.
+        """
+        return wheel_momentum(self.motion, duration, times)

@@ -1,0 +1,179 @@
+"""Planners for lattices whose nodes have one configuration each: search, optimum, refinement."""
+
+from __future__ import annotations
+
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core.arrays import frozen
+from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
+from ffsr_plan.lattice.certificate import Certificate, Counts
+from ffsr_plan.lattice.optimum import lattice_optimum
+from ffsr_plan.lattice.refinement import refined_path
+from ffsr_plan.lattice.roadmap import Roadmap
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult, Solution
+from ffsr_plan.search.workers import run_on_workers
+
+
+class LatticePlanner:
+    """Base class of the planners that search a roadmap.
+
+    Attributes:
+        name: the planner's name in scenario and plan files.
+        exact: whether the search returns the lattice optimum.
+    """
+
+    name: ClassVar[str]
+    exact: ClassVar[bool] = False
+
+    def search(
+        self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None
+    ) -> SearchResult:
+        """Search a roadmap for a path, all of whose edges are proven free.
+
+        Args:
+            roadmap: the roadmap; its nodes and edges are evaluated as the search needs them.
+            rng: source of randomness.
+            monitor: callback and stopping condition.
+
+        Raises:
+            NoPath: there is none, with the layer that cannot be passed.
+            PlanningError: none was found.
+        """
+        raise NotImplementedError
+
+    def refuse(self, problem: Problem) -> None:
+        """Raise `InvalidInput` if the planner cannot solve the problem, naming one that can."""
+        if not problem.lattice.postures:
+            return
+        reason = "it searches one configuration a node, and posture axes give each node several"
+        if problem.mode.attitude_reacts:
+            reason = (
+                "with posture axes the attitude at a node depends on the path that leads to it, "
+                "so that no search over nodes alone is exact"
+            )
+        allowed = f"posture-annealing on a lattice with posture axes: {reason}"
+        raise InvalidInput("planner", self.name, allowed)
+
+    def solve(self, problem: Problem, rng: np.random.Generator, request: SearchRequest) -> Solution:
+        """Search the problem's lattice, state the optimum, refine the path and certify it.
+
+        Args:
+            problem: a problem without posture axes.
+            rng: source of randomness.
+            request: colonies, workers, refinement, callback and stopping condition.
+
+        Raises:
+            InvalidInput: the lattice has posture axes.
+            StartInCollision, GoalInCollision: with link, obstacle and depth.
+            NoPath: the lattice holds no free path, with the layer that cannot be passed.
+            PlanningError: no path was found in time.
+            WorkerDied: a worker process ended without a result.
+        """
+        self.refuse(problem)
+        roadmap = Roadmap(problem)
+        result, counts = self._searched(roadmap, rng, request)
+        lattice, prover = roadmap.lattice, roadmap.prover
+        objective = lattice_objective = roadmap.objective(result.path)
+        optimum = objective if self.exact else roadmap.objective(lattice_optimum(roadmap))
+        offsets, clearances = lattice.offsets[result.path], roadmap.path_clearances(result.path)
+        length = roadmap.path_length(result.path)
+        if request.refine is not False:
+            refined = refined_path(lattice, prover, offsets, clearances, objective)
+            if refined is not None:
+                offsets, clearances, length, objective, spent = refined
+                counts = counts.plus(spent)
+        motion = lattice.nominal.displaced(offsets)
+        least = prover.least_clearance(motion.positions - lattice.nominal.positions, clearances)
+        indices = lattice.indices[result.path]
+        return Solution(
+            lattice=lattice,
+            motion=motion,
+            nodes=frozen(indices if indices.shape[1] > 1 else indices.sum(axis=1)),
+            length=length,
+            objective=objective,
+            lattice_objective=lattice_objective,
+            optimum=min(optimum, lattice_objective),  # equal paths may differ in the last digit
+            clearances=frozen(clearances),
+            history=result.history,
+            trails=result.trails,
+            certificate=Certificate(*counts, least),
+            interrupted=result.interrupted,
+        )
+
+    def _searched(
+        self, roadmap: Roadmap, rng: np.random.Generator, request: SearchRequest
+    ) -> tuple[SearchResult, Counts]:
+        if request.colonies == 1:
+            return self.search(roadmap, rng, request.monitor()), roadmap.counts()
+        roadmap.evaluate_all()  # as every worker does, so that all counts are alike
+        counts, rngs = roadmap.counts(), rng.spawn(request.colonies)
+        if request.workers == 1:
+            outcomes = _run_colonies(roadmap, self, rngs, request.monitor())
+        else:
+            outcomes = run_on_workers(
+                _colonies_of_worker,
+                (roadmap.problem, self),
+                rngs,
+                request.workers,
+                request.time_limit,
+            )
+        result = _best(roadmap, outcomes)
+        return result, Counts(
+            edges_free=sum(o.edges_free for o in outcomes),
+            edges_refused=sum(o.edges_refused for o in outcomes),
+            node_queries=counts.node_queries,
+            edge_queries=counts.edge_queries + sum(o.queries for o in outcomes),
+        )
+
+
+class _Outcome(NamedTuple):
+    """The outcome of one colony; `queries` are the Coal queries that its proofs took."""
+
+    result: SearchResult | FfsrPlanError
+    edges_free: int
+    edges_refused: int
+    queries: int
+
+
+def _colonies_of_worker(
+    job: tuple[Problem, LatticePlanner],
+    rngs: list[np.random.Generator],
+    monitor: SearchMonitor,
+) -> list[_Outcome]:
+    problem, planner = job
+    return _run_colonies(Roadmap(problem), planner, rngs, monitor)
+
+
+def _run_colonies(
+    roadmap: Roadmap,
+    planner: LatticePlanner,
+    rngs: list[np.random.Generator],
+    monitor: SearchMonitor,
+) -> list[_Outcome]:
+    """Colonies one after another, none using proofs of another: all must give the same anywhere."""
+    roadmap.evaluate_all()
+    outcomes = []
+    for rng in rngs:
+        own, before = roadmap.without_edge_states(), roadmap.prover.queries
+        result: SearchResult | FfsrPlanError
+        try:
+            result = planner.search(own, rng, monitor)
+        except FfsrPlanError as error:
+            result = error
+        counts, queries = own.counts(), roadmap.prover.queries - before
+        outcomes.append(_Outcome(result, counts.edges_free, counts.edges_refused, queries))
+        if isinstance(result, SearchResult) and result.interrupted and not monitor.past_deadline():
+            break  # by Ctrl-C: no more colonies
+    return outcomes
+
+
+def _best(roadmap: Roadmap, outcomes: list[_Outcome]) -> SearchResult:
+    """The best of all colonies, the first among equals; their error if none has a path."""
+    results = [o.result for o in outcomes if isinstance(o.result, SearchResult)]
+    if not results:
+        raise next(o.result for o in outcomes if isinstance(o.result, FfsrPlanError))
+    best = min(results, key=lambda result: roadmap.objective(result.path))
+    return best._replace(interrupted=any(result.interrupted for result in results))

@@ -1,0 +1,140 @@
+"""Proof of a path through base offsets and postures, and correction of its final attitude."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.errors import StartInCollision
+from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.problem.objective import objective, path_length
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.proof.prover import Prover
+from ffsr_plan.search.postures.attitude_correction import corrected
+from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
+
+ATTITUDE_TOLERANCE = math.radians(1.0)
+"""Largest goal attitude error [rad] of a plan whose final correction could not be proven."""
+_CORRECTIONS = 6  # attempts, each without the corners that the one before could not prove
+
+
+class RefusedEdge(NamedTuple):
+    """An edge that could not be proven free.
+
+    Attributes:
+        layer: layer that the edge leaves.
+        link: name of the nearest link.
+        obstacle: index of the sphere, or name of the other link.
+        distance: least distance met [m], negative in penetration.
+    """
+
+    layer: int
+    link: str
+    obstacle: int | str
+    distance: float
+
+
+class PathProof(NamedTuple):
+    """A path with its exact motion, Coal's clearances and the edges that were refused.
+
+    Attributes:
+        motion: the motion along the path.
+        prover: proofs along it.
+        clearances: (m + 1,) at the nodes [m].
+        refused: edges that could not be proven free.
+        attitude_error: error of the goal attitude [rad]; 0 where none is demanded.
+    """
+
+    motion: Motion
+    prover: Prover
+    clearances: Array
+    refused: list[RefusedEdge]
+    attitude_error: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether all edges are proven free and the goal attitude is reached."""
+        return not self.refused and self.attitude_error <= ATTITUDE_TOLERANCE
+
+
+def prove_path(lattice: PostureLattice, path: IntArray) -> PathProof:
+    """Prove the motion along a path (m + 1, 2) of base offsets and postures."""
+    base, joints = lattice.base, lattice.joint_values[np.arange(len(path)), path[:, 1]]
+    return _prove(lattice.problem, base.nominal.positions + base.offsets[path[:, 0]], joints)
+
+
+def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProof, int]:
+    """The path with its goal attitude error closed where that can be proven; and Coal queries.
+
+    Where the corrected path is refused, the corners beside the refused edge are left unchanged and
+    the others corrected. Without a proven correction the path is returned as it is.
+    """
+    problem, motion = lattice.problem, proof.motion
+    directions = displacements(problem, lattice.base.nominal.joint_values)
+    held = np.zeros(len(motion.positions), dtype=np.bool_)
+    queries = 0
+    for _ in range(_CORRECTIONS):
+        joints = corrected(
+            problem.robot, problem.start[3:7], problem.goal[3:7], motion.joint_values, directions,
+            held,
+        )  # fmt: skip
+        if joints is None:
+            break
+        other = _prove(problem, motion.positions, joints)
+        queries += other.prover.queries
+        if other.holds and other.attitude_error < proof.attitude_error:
+            return other, queries
+        for edge in other.refused:  # the original path has been proven there
+            held[max(edge.layer - 1, 0) : edge.layer + 3] = True
+    return proof, queries
+
+
+def check_start(problem: Problem) -> None:
+    """Raise `StartInCollision`, with link, obstacle and depth, if the start touches anything."""
+    start = problem.start
+    motion = Motion(problem.robot, problem.mode, start, start, np.tile(start[:3], (2, 1)))
+    prover = Prover(motion, problem.scene, problem.tolerance)
+    still = np.zeros(3)
+    for near in (prover.nearest(0, still, still, 0.0), prover.nearest_links(0, 0.0)):
+        if near.distance <= 0.0:
+            raise StartInCollision(near.link, near.other, -near.distance)
+
+
+def length_of(lattice: PostureLattice, motion: Motion) -> float:
+    """L of Eq. 6 [m]: base offsets and joint displacements from the nominal motion."""
+    nominal = lattice.base.nominal
+    offsets = motion.positions - nominal.positions
+    if motion.mode.floats:
+        offsets = np.zeros_like(offsets)
+    return path_length(lattice.problem, offsets, motion.joint_values - nominal.joint_values)
+
+
+def objective_of(lattice: PostureLattice, proof: PathProof) -> float:
+    """F of Eq. 8 [length units]."""
+    return objective(lattice.problem, length_of(lattice, proof.motion), proof.clearances)
+
+
+def _prove(problem: Problem, positions: Array, joints: Array) -> PathProof:
+    motion = Motion(problem.robot, problem.mode, problem.start, problem.goal, positions, joints)
+    prover, m = Prover(motion, problem.scene, problem.tolerance), len(positions) - 1
+    still = np.zeros(3)
+    clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
+    refused = []
+    for layer, links in enumerate(prover.self_verdicts()):
+        ends = float(clearances[layer]), float(clearances[layer + 1])
+        verdict = prover.certify(layer, still, still, ends)
+        if not verdict.free:
+            near = prover.nearest(layer, still, still, verdict.time)
+        elif not links.free:
+            near = prover.nearest_links(layer, links.time)
+        else:
+            continue
+        refused.append(RefusedEdge(layer, near.link, near.other, near.distance))
+    error = 0.0
+    if problem.reach_attitude:
+        error = float(angle_between(motion.attitudes[-1], problem.goal[3:7]))
+    return PathProof(motion, prover, clearances, refused, error)

@@ -1,0 +1,77 @@
+"""A lattice with posture axes as arrays for the compiled search."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.rotations import rotate
+from ffsr_plan.search.postures.cost_kernels import Obstacles, PostureGrid
+from ffsr_plan.search.postures.posture_lattice import PostureLattice
+
+
+def posture_grid(lattice: PostureLattice) -> PostureGrid:
+    """The arrays of a lattice, no edge refused and no distance queried yet."""
+    problem, base = lattice.problem, lattice.base
+    nominal, cap = base.nominal, problem.clearance_cap
+    places = nominal.positions[:, None] + base.offsets
+    if nominal.mode.floats:  # the centre of mass, at rest
+        center = rotate(problem.start[3:7], lattice.centers[0, lattice.origin])
+        places = np.broadcast_to(problem.start[:3] + center, places.shape)
+    tree = problem.scene.tree
+    return PostureGrid(
+        obstacles=Obstacles(
+            np.array(tree.nodes),
+            tree.children.copy(),
+            tree.spheres.copy(),
+            np.array(problem.robot.primitives.kinds),
+        ),
+        frames=np.array(lattice.frames, order="C"),
+        places=np.array(places, order="C"),
+        centers=np.array(lattice.centers, order="C"),
+        across=(base.distances * problem.position_weight) ** 2,
+        indices=np.array(lattice.indices, order="C"),
+        successors=np.array(lattice.successors, order="C"),
+        squared_steps=np.array(lattice.squared_steps, order="C"),
+        step_rotations=np.array(lattice.step_rotations, order="C"),
+        allowed=np.array(lattice.allowed, order="C"),
+        refused=np.zeros((0, 5), dtype=np.int64),
+        neighbours=_neighbours(base.indices),
+        origin=np.array([base.origin, lattice.origin]),
+        start=np.array(problem.start[3:7]),
+        goal=np.array(problem.goal[3:7]),
+        clearance_weight=problem.delta * problem.length_unit**2,
+        clearance_cap=np.inf if cap is None else cap,
+        delta_d=problem.delta_d,
+        reach_attitude=problem.reach_attitude,
+        radii=_radii(lattice),
+        queries=np.zeros(1, dtype=np.int64),
+    )
+
+
+def without_edge(grid: PostureGrid, layer: int, path: IntArray) -> PostureGrid:
+    """The same arrays with the edge refused by which a path (m + 1, 2) leaves a layer."""
+    edge = np.array([[layer, *path[layer], *path[layer + 1]]], dtype=np.int64)
+    return grid._replace(refused=np.vstack([grid.refused, edge]))
+
+
+def _radii(lattice: PostureLattice) -> Array:
+    """(m + 1, n) largest distance of any point of the shapes from the centre of rotation [m]."""
+    frames = lattice.frames
+    if not frames.shape[2]:
+        return np.zeros(frames.shape[:2])
+    places = np.linalg.norm(frames[..., 9:12] - lattice.centers[:, :, None], axis=-1)
+    return np.array(np.max(places + np.sum(frames[..., 12:15], axis=-1), axis=-1), order="C")
+
+
+def _neighbours(indices: IntArray) -> IntArray:
+    """(b, 2 axes) base offsets one step to either side along each axis, -1 where there is none."""
+    number = {tuple(index): b for b, index in enumerate(indices.tolist())}
+    result = np.full((len(indices), 2 * indices.shape[1]), -1, dtype=np.int64)
+    for b, index in enumerate(indices.tolist()):
+        for axis in range(indices.shape[1]):
+            for side, change in enumerate((-1, 1)):
+                beside = list(index)
+                beside[axis] += change
+                result[b, 2 * axis + side] = number.get(tuple(beside), -1)
+    return result

@@ -1,0 +1,137 @@
+"""Plan files: read back bit for bit, and refused when they are not whole."""
+
+import json
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+
+
+def test_a_saved_plan_loads_bit_for_bit(fig2a_plan, tmp_path):
+    fig2a_plan.save(tmp_path / "plan.json")
+    loaded = fp.Plan.load(tmp_path / "plan.json")
+    assert loaded == fig2a_plan
+    assert loaded.seconds == fig2a_plan.seconds
+    assert np.array_equal(loaded.configurations, fig2a_plan.configurations)
+    assert np.array_equal(loaded.at(0.37), fig2a_plan.at(0.37))
+    loaded.save(tmp_path / "again.json")
+    assert (tmp_path / "again.json").read_bytes() == (tmp_path / "plan.json").read_bytes()
+
+
+def test_a_plan_without_obstacles_saves_and_loads_too(point, tmp_path):
+    start, goal = point.configuration(), point.configuration((4, 0, 0))
+    lattice = fp.Lattice(4, fp.Axis(1, 0.5), fp.Axis(2, 0.5))
+    plan = fp.plan(fp.Problem(point, fp.Scene(), start, goal, lattice=lattice))
+    plan.save(tmp_path / "plan.json")
+    assert fp.Plan.load(tmp_path / "plan.json") == plan
+    assert plan.verify(10).ok
+    assert plan.nodes.shape == (5, 2)
+
+
+def test_a_plan_file_cut_short_is_refused(fig2a_plan, tmp_path):
+    path = tmp_path / "plan.json"
+    fig2a_plan.save(path)
+    path.write_text(path.read_text()[:-2000])
+    with pytest.raises(fp.InvalidInput, match="cut short"):
+        fp.Plan.load(path)
+
+
+@pytest.mark.parametrize("key", ["length", "configurations", "problem"])
+def test_an_edited_plan_file_is_refused(fig2a_plan, tmp_path, key):
+    path = tmp_path / "plan.json"
+    fig2a_plan.save(path)
+    data = json.loads(path.read_text())
+    if key == "length":
+        data["length"] += 1e-9
+    elif key == "configurations":
+        data["configurations"][3][0] += 1e-9
+    else:
+        data["problem"]["scene"]["radii"][0] *= 0.5
+    path.write_text(json.dumps(data))
+    with pytest.raises(fp.InvalidInput, match="digest"):
+        fp.Plan.load(path)
+
+
+def resigned(path, change):
+    """Change a plan file and give it a digest that fits, as only a forger would."""
+    from ffsr_plan.plans.plan_file import digest
+
+    data = json.loads(path.read_text())
+    data.pop("sha256")
+    change(data)
+    path.write_text(json.dumps({"sha256": digest(data), **data}))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda d: d["configurations"].pop(),
+        lambda d: d.update(configurations=[]),
+        lambda d: d.update(clearances=d["clearances"][:3]),
+        lambda d: d["nodes"].pop(),
+        lambda d: d["problem"]["lattice"].update(divisions=41),
+        lambda d: d.update(length="a"),
+        lambda d: d["planner"].update(name="ants"),
+        lambda d: d.pop("history"),
+    ],
+)
+def test_a_malformed_plan_file_is_refused_even_with_a_fitting_digest(fig2a_plan, tmp_path, change):
+    fig2a_plan.save(tmp_path / "plan.json")
+    resigned(tmp_path / "plan.json", change)
+    with pytest.raises(fp.InvalidInput):
+        fp.Plan.load(tmp_path / "plan.json")
+
+
+FORGED = [
+    (lambda d: d.update(seed="x"), "seed of the plan: got 'x'"),
+    (lambda d: d.update(seed=-1), "seed of the plan: got -1"),
+    (lambda d: d.update(seed=True), "seed of the plan: got True"),
+    (lambda d: d.update(interrupted="no"), "interrupted of the plan"),
+    (lambda d: d["certificate"].update(edges_free=-1), "edges_free: got -1"),
+    (lambda d: d["certificate"].update(edges_refused=1.5), "edges_refused: got 1.5"),
+    (lambda d: d["certificate"].update(node_queries="3"), "node_queries: got '3'"),
+    (lambda d: d["certificate"].update(edge_queries=-2), "edge_queries: got -2"),
+    (lambda d: d["certificate"].update(least_clearance=-0.5), "least_clearance: got -0.5"),
+    (lambda d: d["nodes"].__setitem__(3, 999), "nodes of the plan, lateral: got 999"),
+    (
+        lambda d: d["problem"]["robot"].update(disabled_pairs=[["base", "left_link_2"]]),
+        "disabled_pairs of the plan.*those of its SRDF",
+    ),
+    (
+        lambda d: d["problem"]["robot"]["replacements"].append({"link": "base"}),
+        "replacements of the plan.*those of its URDF",
+    ),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), FORGED)
+def test_figures_that_no_planner_gives_are_refused_even_with_a_fitting_digest(
+    fig2a_plan, tmp_path, change, message
+):
+    fig2a_plan.save(tmp_path / "plan.json")
+    resigned(tmp_path / "plan.json", change)
+    with pytest.raises(fp.InvalidInput, match=message):
+        fp.Plan.load(tmp_path / "plan.json")
+
+
+@pytest.mark.parametrize("lattice", [fp.Lattice(4), fp.Lattice(4, postures=[
+    fp.PostureAxis({"left_1": 1.0}, 2, 0.1)])])  # fmt: skip
+def test_nodes_lie_within_the_lattice(robot, tmp_path, lattice):
+    goal = robot.configuration((4, 0, 0))
+    plan = fp.plan(fp.Problem(robot, fp.Scene(), robot.neutral(), goal, lattice=lattice))
+    path = tmp_path / "plan.json"
+    plan.save(path)
+    assert fp.Plan.load(path) == plan
+    resigned(path, lambda d: d["nodes"].__setitem__(2, 3))
+    with pytest.raises(fp.InvalidInput, match=r"nodes of the plan.*got 3"):
+        fp.Plan.load(path)
+
+
+@pytest.mark.parametrize(
+    "text", ['{"format": "ffsr-plan/3", "a": NaN}', "[" * 100_000, '{"a": ' + "1" * 5001 + "}"]
+)
+def test_hostile_json_is_refused(tmp_path, text):
+    (tmp_path / "plan.json").write_text(text)
+    with pytest.raises(fp.InvalidInput):
+        fp.Plan.load(tmp_path / "plan.json")

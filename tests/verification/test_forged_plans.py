@@ -1,0 +1,128 @@
+"""Verification finds what is wrong with a plan."""
+
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import frozen
+from ffsr_plan.robots.robot import robot_from_urdf
+from tests.helpers.builders import random_robot
+
+
+def test_full_verification_of_one_plan(fig2a_plan):
+    report = fig2a_plan.verify()
+    assert report.ok
+    assert report.samples >= 40 * 2000
+    assert report.clearance_error < 1e-12
+    assert report.objective_error < 1e-12
+    assert report.least_self_separation > 0.0
+
+
+def moved(plan, **changes):
+    """A forged plan."""
+    return replace(plan, **changes)
+
+
+@pytest.mark.parametrize("mode", ["free-flying", "attitude-held"])
+@pytest.mark.parametrize("divisions", [2, 3])
+def test_momentum_is_summed_sharply_where_arms_move_far_on_few_edges(mode, divisions):
+    for seed in (7, 15, 16, 20):
+        robot = random_robot(seed)
+        ends = (robot.assemble(np.array([x, 0.0, 0.0]), rotations.IDENTITY, np.full(robot.nd, v))
+                for x, v in ((0.0, -2.9), (6.0, 2.9)))  # fmt: skip
+        robot.collision_model.removeAllCollisionPairs()
+        problem = fp.Problem(robot, fp.Scene(), *ends, mode, fp.Lattice(divisions))
+        report = fp.plan(problem, fp.LatticeOptimum(), refine=False).verify(5)
+        error = report.wheel_momentum_error if mode != "free-flying" else report.momentum_residual
+        assert error < 1e-9
+
+
+def test_verification_notices_an_obstacle_that_the_planner_did_not_see(fig2a_plan):
+    problem = fig2a_plan.problem
+    in_the_way = fig2a_plan.at(0.4123)[:3] + np.array([0.0, 0.0, 0.3])
+    scene = fp.Scene(
+        np.vstack([problem.scene.centers, in_the_way]), np.append(problem.scene.radii, 0.1)
+    )
+    report = moved(fig2a_plan, problem=with_changes(problem, scene=scene)).verify(200)
+    assert not report.ok
+    assert "inside an obstacle" in " ".join(report.problems)
+
+
+def test_verification_notices_a_base_that_does_not_react(fig2a_plan):
+    """The plan of a held attitude, passed off as a free-flying one."""
+    held = with_changes(fig2a_plan.problem, mode="attitude-held")
+    plan = fp.plan(held, fp.AntSystem(), seed=0, refine=False)
+    forged = replace(plan, problem=fig2a_plan.problem)
+    report = forged.verify(50)
+    assert report.momentum_residual > 1e-3
+    assert not report.ok
+
+
+@pytest.mark.parametrize(
+    ("field", "change", "complaint"),
+    [
+        ("length", lambda v: v * 1.001, "the length is"),
+        ("objective", lambda v: v * 0.999, "F is"),
+        ("clearances", lambda v: frozen(v + 1e-6), "node clearances differ"),
+    ],
+)
+def test_verification_notices_wrong_figures(fig2a_plan, field, change, complaint):
+    forged = moved(fig2a_plan, **{field: change(getattr(fig2a_plan, field))})
+    report = forged.verify(20)
+    assert not report.ok
+    assert complaint in " ".join(report.problems)
+
+
+def test_verification_notices_a_wrong_start_and_goal(fig2a_plan):
+    shifted = fig2a_plan.motion.displaced(np.array([0.01, 0.0, 0.0]))
+    report = replace(fig2a_plan, motion=shifted).verify(20)
+    assert "the motion does not begin at the start" in report.problems
+    assert "the motion does not end at the goal" in report.problems
+
+
+def with_changes(problem, **changes):
+    names = ("robot", "scene", "start", "goal", "mode", "lattice", "delta", "length_unit")
+    return fp.Problem(**{name: getattr(problem, name) for name in names} | changes)
+
+
+def test_verification_notices_a_proof_that_claims_too_much(fig2a_plan):
+    certificate = fig2a_plan.certificate._replace(least_clearance=9.0)
+    report = moved(fig2a_plan, certificate=certificate).verify(50)
+    assert "said to be proven" in " ".join(report.problems)
+
+
+def test_verification_does_not_depend_on_the_order_of_links_in_the_urdf(robot):
+    """Pinocchio lists shapes along the tree, the re-check as they stand in the file."""
+    root = ElementTree.fromstring(robot.urdf)
+    links = root.findall("link")
+    for element in links:
+        root.remove(element)
+    root.extend(reversed(links))
+    shuffled = robot_from_urdf(ElementTree.tostring(root, encoding="unicode"), "shuffled")
+    original = fp.load_scenario("fig2b")
+    plans = [
+        fp.plan(with_changes(original, robot=r), fp.LatticeOptimum(), refine=False)
+        for r in (robot, shuffled)
+    ]
+    reports = [plan.verify(50) for plan in plans]
+    assert all(report.ok for report in reports)
+    assert reports[0].least_self_separation == pytest.approx(reports[1].least_self_separation)
+
+
+def test_verification_notices_arms_that_pass_through_each_other(robot):
+    """A robot whose self-collision pairs got lost plans through itself; the check has its own."""
+    careless = robot_from_urdf(robot.urdf, "careless")
+    careless.collision_model.removeAllCollisionPairs()
+    names = robot.joint_names
+    begin, end = (-1.6, -1.0, -0.4, 0.9, 1.9, 1.0), (-1.6, -1.5, -0.7, 1.0, -0.6, 0.6)
+    start = robot.configuration(joints=dict(zip(names, begin, strict=True)))
+    goal = robot.configuration((6, 0, 0), joints=dict(zip(names, end, strict=True)))
+    problem = fp.Problem(careless, fp.Scene(), start, goal,
+                         lattice=fp.Lattice(8, fp.Axis(2, 0.3)))  # fmt: skip
+    report = fp.plan(problem, fp.LatticeOptimum()).verify(100)
+    assert not report.ok
+    assert "two links touch" in " ".join(report.problems)
