@@ -204,7 +204,7 @@ def robots() -> None:
         table.add_row(
             f"{robot.name}\n{count} joint{'' if count == 1 else 's'}",
             f"{robot.mass:.4g}",
-            f"{robot.reach:.2f} m",
+            f"{robot.reach_bound:.2f} m",
             "\n".join(robot.postures),
             "\n".join(robot.joint_names),
         )

@@ -13,10 +13,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from ffsr_plan.collision.nearest_kernels import nearest_pairs, nearest_to_each, pairs_below
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.kernels import call
 from ffsr_plan.robots.collision_shapes import sharpen
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
@@ -40,13 +40,9 @@ class ObstacleQuery:
     """
 
     def __init__(self, robot: SpaceRobot, scene: Scene) -> None:
-
-        from ffsr_plan.collision import nearest_kernels  # numba takes its time to import
-
-        self._robot, self._kernels = robot, nearest_kernels
+        self._robot = robot
         self._links = [robot.link_of(shape) for shape in robot.collision_model.geometryObjects]
         self._tree, self._shapes = scene.tree, robot.primitives
-        self._search = (*self._tree[:3], self._shapes.kinds)
         self._bounds_only = not bool(self._shapes.exact.all())
         self.empty = len(scene) == 0 or len(self._shapes.kinds) == 0
         self.count = 0
@@ -93,7 +89,7 @@ class ObstacleQuery:
         if self.empty:
             return np.full(len(self._shapes.kinds), np.inf)
         frames = placed.frames[place]
-        return np.asarray(call(self._kernels.nearest_to_each, *self._search, frames, shift))
+        return nearest_to_each(self._tree, self._shapes.kinds, frames, shift)
 
     def _pairs(
         self, placed: Placements, places: IntArray, shifts: Array
@@ -103,8 +99,8 @@ class ObstacleQuery:
             nothing = np.zeros(len(places), dtype=np.int64)
             return np.full(len(places), np.inf), nothing, nothing
         self.count += len(places)
-        _, shape, sphere, local = call(
-            self._kernels.nearest_pairs, *self._search, placed.frames, places, shifts
+        _, shape, sphere, local = nearest_pairs(
+            self._tree, self._shapes.kinds, placed.frames, places, shifts
         )
         least = self._measured(shape, sphere, local)
         if self._bounds_only:
@@ -139,8 +135,8 @@ class ObstacleQuery:
     ) -> tuple[float, int, int]:
         """Measure what may be nearer than a pair at distance `least` that was found by bounds."""
         rotations, positions = placed.rotations[place], placed.positions[place]
-        frames, below = placed.frames[place], self._kernels.pairs_below
-        bounds, shapes, rows = call(below, *self._search, frames, shift, least)
+        frames = placed.frames[place]
+        bounds, shapes, rows = pairs_below(self._tree, self._shapes.kinds, frames, shift, least)
         best = (least, shape, sphere)
         for k in np.argsort(bounds, kind="stable").tolist():
             if bounds[k] >= best[0]:

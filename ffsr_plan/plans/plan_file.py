@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ffsr_plan.core.arrays import frozen
 from ffsr_plan.core.checks import finite_array, number, truth, whole_number
 from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
-from ffsr_plan.core.text_files import write_whole
+from ffsr_plan.core.text_files import write_text
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
@@ -213,7 +213,7 @@ def write(plan: PlanData, path: Path) -> None:
     """Write `path`; an unfinished file never takes its place."""
     data = to_dict(plan)
     text = json.dumps({"sha256": digest(data), **data}, allow_nan=False, indent=1)
-    write_whole("plan file", path, text)
+    write_text("plan file", path, text)
 
 
 def read(path: Path) -> PlanData:

@@ -14,6 +14,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.srdf import disabled_pairs
 from ffsr_plan.robots.urdf_validation import check_urdf, numbers, parse
 
@@ -67,7 +68,7 @@ def load_arm(
             value outside the joint's limits, or a joint that mimics one that is not locked.
     """
     path, own, folders = _find(source)
-    text = _read("arm", path)
+    text = read_text("arm", path)
     where = f"arm {source}"
     robot = parse(text, where)
     mimics = _take_mimics(robot)
@@ -77,15 +78,8 @@ def load_arm(
     names = [str(link.get("name")) for link in robot.findall("link")]
     root = next(name for name in names if name not in children)
     told = own if srdf is None else Path(srdf)
-    pairs = disabled_pairs("" if told is None else _read("srdf", told), f"{where}, SRDF", names)
+    pairs = disabled_pairs("" if told is None else read_text("srdf", told), f"{where}, SRDF", names)
     return Arm(robot, root, folders, where, pairs)
-
-
-def _read(what: str, path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInput(what, str(path), f"a readable UTF-8 file ({error})") from None
 
 
 def _find(source: str | Path) -> tuple[Path, Path | None, tuple[str, ...]]:

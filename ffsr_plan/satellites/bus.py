@@ -1,11 +1,10 @@
-"""Bus of a satellite: a box with mass and solar panels, and its URDF elements."""
+"""Bus of a satellite: a box with mass and solar panels."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
-from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,11 +16,6 @@ from ffsr_plan.core.rules import Number, Numbers, Rule, Text, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.robots.urdf_validation import LARGEST
 
-LINK = "bus"
-"""Name of the root link."""
-GOLD = "0.86 0.64 0.22 1"
-NAVY = "0.10 0.16 0.36 1"
-
 
 @dataclass(frozen=True)
 class BoxSize(Rule):
@@ -29,7 +23,7 @@ class BoxSize(Rule):
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> Array:
         """See `Rule.check`."""
-        size = place(what, value)  # type: ignore[arg-type]
+        size = Numbers(3, at_most=LARGEST).check(what, value, others)
         if not np.all(size > 0.0):
             raise InvalidInput(what, value, "three numbers greater than 0 m")
         return size
@@ -44,7 +38,7 @@ class Inertia(Rule):
         if value is None:
             if not {"size", "mass"} <= set(others):  # refused already
                 return value
-            value = _box_inertia(others["mass"], others["size"])
+            value = box_inertia(others["mass"], others["size"])
         return _inertia(what, value)  # type: ignore[arg-type]
 
 
@@ -96,72 +90,25 @@ class Bus:
     panels: Given[tuple[Panel, ...], Sequence[Panel]] = setting(default=())
 
 
-def elements(bus: Bus) -> list[ElementTree.Element]:
-    """URDF links and joints of a bus with its panels, the root link first."""
-    root = box_link(LINK, bus.size, bus.mass, GOLD)
-    root[0] = _inertial(bus.mass, bus.inertia, bus.center_of_mass)
-    found = [root]
-    for k, panel in enumerate(bus.panels, 1):
-        name = panel.name or f"panel_{k}"
-        found.append(box_link(name, panel.size, panel.mass, NAVY))
-        found.append(fixed_joint(f"{LINK}_to_{name}", name, panel.position, panel.attitude))
-    return found
+def box_inertia(mass: float, size: ArrayLike) -> Array:
+    """Moments of inertia of a homogeneous box about its centre.
 
+    Args:
+        mass: [kg].
+        size: (3,) lengths of the sides [m].
 
-def box_link(
-    name: str, size: ArrayLike, mass: float, colour: str, middle: ArrayLike = (0.0, 0.0, 0.0)
-) -> ElementTree.Element:
-    """A homogeneous box of sides (3,) about a point (3,) of its frame [m], as a URDF link."""
-    link = ElementTree.Element("link", name=name)
-    link.append(_inertial(mass, np.diag(_box_inertia(mass, size)), middle))
-    visual = box_shape("visual", size, middle)
-    material = ElementTree.SubElement(visual, "material", name=f"{name}_colour")
-    ElementTree.SubElement(material, "color", rgba=colour)
-    link.extend([visual, box_shape("collision", size, middle)])
-    return link
-
-
-def fixed_joint(
-    name: str, child: str, position: ArrayLike, attitude: ArrayLike
-) -> ElementTree.Element:
-    """A joint that fixes a link to the bus, at (3,) [m] and ZYX angles (3,) [rad]."""
-    joint = ElementTree.Element("joint", name=name, type="fixed")
-    alpha, beta, gamma = np.asarray(attitude)
-    ElementTree.SubElement(joint, "origin", xyz=text(position), rpy=text([gamma, beta, alpha]))
-    ElementTree.SubElement(joint, "parent", link=LINK)
-    ElementTree.SubElement(joint, "child", link=child)
-    return joint
-
-
-def box_shape(
-    kind: str, size: ArrayLike, position: ArrayLike, rpy: str = "0 0 0"
-) -> ElementTree.Element:
-    """A `<collision>` or `<visual>` box of sides (3,) about a point (3,) [m]."""
-    shape = ElementTree.Element(kind)
-    ElementTree.SubElement(shape, "origin", xyz=text(position), rpy=rpy)
-    ElementTree.SubElement(ElementTree.SubElement(shape, "geometry"), "box", size=text(size))
-    return shape
-
-
-def text(numbers: ArrayLike) -> str:
-    """Numbers as a URDF attribute, with all their digits."""
-    words = (repr(float(n)) for n in np.asarray(numbers, dtype=np.float64).ravel())
-    return " ".join(word.removesuffix(".0") for word in words)
-
-
-def place(what: str, value: ArrayLike) -> Array:
-    """(3,) [m] within what a URDF may hold."""
-    return finite_array(what, value, (3,), LARGEST)
-
-
-def _box_inertia(mass: float, size: ArrayLike) -> Array:
-    """(3,) moments of a homogeneous box about its middle."""
+    Returns:
+        (3,) moments about the axes of the box [kg m^2].
+    """
     x, y, z = np.asarray(size) ** 2
     return mass / 12.0 * np.array([y + z, x + z, x + y])
 
 
+_box_inertia = box_inertia  # name within this module
+
+
 def _inertia(what: str, value: ArrayLike) -> Array:
-    """(3, 3), if it is that of a body with mass in all three directions."""
+    """(3, 3) inertia [kg m^2] of a body with mass in all three directions, or `InvalidInput`."""
     try:
         flat = np.ndim(value) == 1
     except ValueError:  # rows of different lengths
@@ -175,13 +122,3 @@ def _inertia(what: str, value: ArrayLike) -> Array:
         allowed = "principal moments above 0 kg m^2 of which no two sum to less than the third"
         raise InvalidInput(what, value, allowed)
     return frozen(tensor)
-
-
-def _inertial(mass: float, inertia: Array, center: ArrayLike) -> ElementTree.Element:
-    inertial = ElementTree.Element("inertial")
-    ElementTree.SubElement(inertial, "origin", xyz=text(center), rpy="0 0 0")
-    ElementTree.SubElement(inertial, "mass", value=text(mass))
-    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = inertia
-    moments = {"ixx": ixx, "ixy": ixy, "ixz": ixz, "iyy": iyy, "iyz": iyz, "izz": izz}
-    ElementTree.SubElement(inertial, "inertia", {k: text(v) for k, v in moments.items()})
-    return inertial

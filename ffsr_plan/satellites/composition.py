@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Annotated, Any, cast
+from typing import Annotated, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -26,7 +26,14 @@ from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
 from ffsr_plan.robots.urdf_validation import LARGEST
 from ffsr_plan.satellites.arms import Arm, load_arm
-from ffsr_plan.satellites.bus import Bus, box_shape, elements, fixed_joint, text
+from ffsr_plan.satellites.bus import Bus
+from ffsr_plan.satellites.urdf_xml import (
+    attribute_text,
+    box_shape,
+    bus_elements,
+    comment,
+    fixed_joint,
+)
 
 SHAPES = ("boxes", "meshes")
 _NO_INERTIA = (
@@ -81,7 +88,7 @@ class Mount:
 
 def compose(
     bus: Bus,
-    arms: Sequence[Mount | tuple[object, ...]],
+    arms: Sequence[Mount],
     name: str = "satellite",
     *,
     shapes: str = "boxes",
@@ -98,7 +105,7 @@ def compose(
 
     Args:
         bus: the bus, the robot's root link, in whose frame arms are mounted.
-        arms: a `Mount` each, or a tuple (arm, (position, attitude), prefix).
+        arms: a `Mount` for each arm.
         name: of the robot.
         shapes: what collision meshes become: `boxes`, or `meshes`, which keeps them by their
             absolute path, pictures included: for this machine only.
@@ -116,9 +123,12 @@ def compose(
     one_of("shapes", shapes, SHAPES)
     if not isinstance(arms, Sequence) or isinstance(arms, str):
         raise InvalidInput("arms", arms, "a sequence of Mounts")
-    mounts = [_mount(entry) for entry in arms]
-    loaded = [load_arm(mount.arm, mount.locked, mount.srdf) for mount in mounts]
-    both = list(zip(loaded, mounts, strict=True))
+    for mount in arms:
+        if not isinstance(mount, Mount):
+            allowed = "Mounts, such as Mount('ur5', position=(0, 0, 0.5), prefix='left_')"
+            raise InvalidInput("arms", mount, allowed)
+    loaded = [load_arm(mount.arm, mount.locked, mount.srdf) for mount in arms]
+    both = list(zip(loaded, arms, strict=True))
     return put_together(bus, both, name, shapes, postures or {}, may_touch)
 
 
@@ -132,7 +142,7 @@ def put_together(
 ) -> SpaceRobot:
     """The same for arms that have been read; see `compose`."""
     robot = ElementTree.Element("robot", name=name)
-    robot.extend(elements(bus))
+    robot.extend(bus_elements(bus))
     pairs = []
     for arm, mount in arms:
         root = mount.prefix + arm.root
@@ -140,24 +150,12 @@ def put_together(
         own = [part for part in arm.robot if part.tag in ("link", "joint")]
         parts = [joint, *(_renamed(part, arm, mount.prefix, shapes) for part in own)]
         _check_names(robot, parts, arm, mount.prefix)
-        robot.append(_comment(f"arm {Path(arm.where.removeprefix('arm ')).name}"))
+        robot.append(comment(f"arm {Path(arm.where.removeprefix('arm ')).name}"))
         robot.extend(parts)
         pairs += [(mount.prefix + one, mount.prefix + two) for one, two in arm.may_touch]
     ElementTree.indent(robot)
     urdf = ElementTree.tostring(robot, encoding="unicode") + "\n"
     return robot_from_urdf(urdf, name, srdf=_srdf(name, postures, [*pairs, *may_touch]))
-
-
-def _mount(entry: object) -> Mount:
-    if isinstance(entry, Mount):
-        return entry
-    allowed = "a Mount, or (arm, (position, attitude), prefix)"
-    if not isinstance(entry, (tuple, list)) or len(entry) != 3:
-        raise InvalidInput("arms", entry, allowed)
-    arm, pose, prefix = entry
-    if not isinstance(pose, (tuple, list)) or len(pose) != 2:
-        raise InvalidInput("arms", entry, allowed)
-    return Mount(arm, pose[0], pose[1], prefix)
 
 
 def _check_names(
@@ -237,15 +235,11 @@ def _boxes(
         rpy = place_of.get("rpy", rpy)
     count = "a box" if len(boxes) == 1 else f"{len(boxes)} boxes"
     about = f"{count} around {Path(address).name}, at most {1e3 * excess:.1f} mm beyond its hull"
-    found = [_comment(about)]
+    found = [comment(about)]
     for low, high in ends:
         middle = frame.act(0.5 * (low + high)).round(12)
         found.append(box_shape("collision", (high - low).round(7), middle, rpy))
     return found
-
-
-def _comment(words: str) -> ElementTree.Element:
-    return cast("ElementTree.Element", ElementTree.Comment(f" {words.replace('--', '__')} "))
 
 
 def _srdf(
@@ -263,7 +257,7 @@ def _srdf(
         state = ElementTree.SubElement(root, "group_state", name=posture, group="arms")
         for joint, value in joints.items():
             checked = number(f"postures['{posture}'], '{joint}'", value)
-            ElementTree.SubElement(state, "joint", name=str(joint), value=text(checked))
+            ElementTree.SubElement(state, "joint", name=str(joint), value=attribute_text(checked))
     for pair in may_touch:
         if len(pair) != 2 or not all(isinstance(link, str) for link in pair):
             raise InvalidInput("may_touch", pair, "pairs of link names")

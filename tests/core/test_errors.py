@@ -17,9 +17,9 @@ EXAMPLES = [
     errors.PoseOutOfReach("tool", 0.1, 0.2, np.zeros(7)),
     errors.PoseOutOfReach("tool", 0.1, None, np.zeros(7)),
     errors.UnprovenPath(3, "arm", None, 0.01, 40),
-    errors.WorkerDied(worker=0, colonies=[0, 2], status=-9),
+    errors.WorkerDied(worker=0, colonies=[0, 2], status="SIGKILL(-9)"),
     errors.PlanNotVerified(("one", "two")),
-    errors.IntegrationError(0.5),
+    errors.IntegrationError("a text"),
     errors.InternalError("no open edge"),
     errors.PlanningError("a text"),
 ]

@@ -17,7 +17,7 @@ from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.kernels import said_after
+from ffsr_plan.core.kernels import notify_after
 from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction
@@ -105,7 +105,7 @@ class PostureLattice:
             begin, on = self.joint_values[i, p], self.successors[p, step]
             steps = self.joint_values[i + 1, on] - begin
             words = f"the base's reaction to {len(steps)} joint steps, before the search"
-            with said_after(5.0, words):
+            with notify_after(5.0, words):
                 turned = Reaction.of_segments(self.problem.robot, begin, steps).increments
             found[i, p, step] = turned
             if self.alike:
