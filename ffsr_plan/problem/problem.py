@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import angle_between, to_angles
 from ffsr_plan.core.rules import NoneMeans, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
@@ -106,11 +106,7 @@ class Problem:
         return f"Problem({fields})"
 
     def _repr_html_(self) -> str:
-        rows = (
-            f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>"
-            for name, value in self._summary()
-        )
-        return f"<table>{''.join(rows)}</table>"
+        return html_table("Problem", dict(self._summary()))
 
     def reaching(
         self, frame: str, position: ArrayLike, attitude: ArrayLike | None = None, *, seed: int = 0
@@ -211,7 +207,7 @@ class Problem:
         return [
             ("robot", self.robot.name),
             ("mode", str(self.mode)),
-            ("obstacles", f"{len(self.scene)} spheres"),
+            ("obstacles", counted(len(self.scene), "sphere")),
             ("lattice", f"{lattice.divisions} divisions{across}"),
             ("delta", f"{self.delta:g}"),
             ("length_unit", f"{self.length_unit:g} m"),

@@ -21,13 +21,14 @@ class PlannerTable:
 
     Attributes:
         seed: of the random numbers.
-        refine: whether to move the path off the lattice after the search.
+        refine: whether to move the path off the lattice after the search; without it, on every
+            lattice without posture axes.
     """
 
     kind: ClassVar[type[Planner] | None] = None
 
     seed: Annotated[int, WholeNumber()] = 0
-    refine: Annotated[bool, Truth()] = True
+    refine: Annotated[bool, Truth()] | None = None
 
     def planner(self) -> Planner | None:
         """The planner, or None for the default of the lattice."""

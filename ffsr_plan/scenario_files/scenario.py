@@ -35,14 +35,15 @@ class Scenario:
         problem: what to plan.
         planner: the planner that the file names, or None for the default of the lattice.
         seed: of the planner's random numbers.
-        refine: whether to move the path off the lattice after the search.
+        refine: whether to move the path off the lattice after the search, or None for the default
+            of `plan`.
     """
 
     title: str
     problem: Problem
     planner: Planner | None
     seed: int
-    refine: bool
+    refine: bool | None
 
     @classmethod
     def load(cls, source: str | Path) -> Scenario:

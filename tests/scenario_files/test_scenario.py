@@ -50,7 +50,7 @@ def test_a_scenario_is_read_as_written(tmp_path, robot):
     assert (problem.delta, problem.length_unit, problem.clearance_cap) == (2.0, 0.1, None)
     assert scenario.planner == fp.AntSystem(ants=8, rho=0.7)
     assert scenario.seed == 5
-    assert scenario.refine
+    assert scenario.refine is None
     assert repr(scenario).startswith("Scenario('one sphere', Problem(robot=planar_dual_arm, ")
     assert fp.load_scenario(write(tmp_path, GOOD)).delta == 2.0
 

@@ -194,7 +194,7 @@ def test_obstacles_that_close_every_way_are_named(robot):
 def test_what_is_no_planner_or_no_seed_is_refused(robot):
     problem = fp.Problem(**arguments(robot))
     with pytest.raises(fp.InvalidInput, match="planner"):
-        fp.plan(problem, planner="ant-system")
+        fp.plan(problem, planner="ants")
     for seed in (-1, 1.5, "0"):
         with pytest.raises(fp.InvalidInput, match="seed"):
             fp.plan(problem, seed=seed)
