@@ -230,6 +230,23 @@ class NamedNumbers(Rule):
         return {"type": "object", "additionalProperties": {"type": "number"}}
 
 
+@dataclass(frozen=True)
+class InstanceOf(Rule):
+    """An object of a class, such as a robot, that no table describes.
+
+    Attributes:
+        kind: the class.
+    """
+
+    kind: type
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
+        """See `Rule.check`."""
+        if not isinstance(value, self.kind):
+            raise InvalidInput(what, value, f"a {self.kind.__name__}")
+        return value
+
+
 class NoneMeans:
     """A field for which None is a request for an object made by a function.
 

@@ -241,8 +241,6 @@ def _in_our_words(cls: type, error: ValidationError, of: str) -> InvalidInput:
         value, allowed = None, "a value: it is required"
     elif kind in ("tuple_type", "list_type"):
         allowed = "a list"
-    elif "class" in context:
-        allowed = f"an object of the class {context['class']}"
     else:
         allowed = first["msg"].removeprefix("Input should be ")
     if of:

@@ -13,7 +13,7 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import angle_between, to_angles
-from ffsr_plan.core.rules import NoneMeans, Number, Rule, Truth, Vector
+from ffsr_plan.core.rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
@@ -79,8 +79,8 @@ class Problem:
         InvalidInput: naming the field, its value and what is allowed.
     """
 
-    robot: SpaceRobot
-    scene: Scene
+    robot: Annotated[SpaceRobot, InstanceOf(SpaceRobot)]
+    scene: Annotated[Scene, InstanceOf(Scene)]
     start: Annotated[Vector, Configuration()]
     goal: Annotated[Vector, Configuration()]
     mode: Annotated[Given[Mode, Mode | str], ModeName()] = setting(default=Mode.FREE_FLYING)

@@ -161,7 +161,7 @@ def test_posture_axes_bring_base_and_tool_to_the_goal():
     wanted = fp.Problem(robot, fp.Scene(), problem.start, ahead, lattice=lattice)
     wanted = wanted.reaching(frame, at_goal, angles_of(rotation))
     assert wanted.reach_attitude
-    plan = fp.plan(wanted, fp.MaxMinAntSystem(cycles=5))
+    plan = fp.plan(wanted, fp.PostureAnnealing(cycles=5))
     reached, turned = pose_of(robot, plan.configurations[-1], frame)
     assert reached == pytest.approx(at_goal, abs=1e-6)
     assert np.allclose(turned, rotation, atol=1e-6)

@@ -55,10 +55,10 @@ def test_replace_checks_again(problem):
         replace(problem, delta=-2.0)
 
 
-@pytest.mark.parametrize("wrong", [{"robot": "planar_dual_arm"}, {"scene": None}])
+@pytest.mark.parametrize("wrong", [{"robot": "planar_dual_arm"}, {"scene": None}, {"scene": {}}])
 def test_robot_and_scene_have_to_be_objects(problem, wrong):
     name = next(iter(wrong))
-    with pytest.raises(fp.InvalidInput, match=f"{name}: got .*an object of the class"):
+    with pytest.raises(fp.InvalidInput, match=f"{name}: got .*; allowed: a S"):
         replace(problem, **wrong)
 
 
