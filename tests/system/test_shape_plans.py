@@ -121,7 +121,7 @@ def test_verification_notices_a_replacement_that_does_not_hold_the_original(arm_
         arm_plan.problem.start, arm_plan.problem.goal, lattice=arm_plan.problem.lattice,
     )  # fmt: skip
     report = replace(arm_plan, problem=problem).verify(20)
-    assert any("'hand' sticks out" in problem for problem in report.problems)
+    assert any("'hand' is not contained" in problem for problem in report.problems)
 
 
 @given(seeds)

@@ -1,4 +1,4 @@
-"""Limits of a flight: velocities, accelerations, jerks and torques."""
+"""Limits of a flight on velocity, acceleration, jerk, torque and pulses."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from ffsr_plan.core.settings import settings
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.trajectory.straight_runs import StraightRuns
 
-_GREATEST = 1e9
-"""Beyond it a flight is so short that rounding determines thrust and delta-v."""
+_LARGEST_LIMIT = 1e9  # with larger ones thrust and delta-v would be dominated by rounding
 PerJoint = float | Mapping[str, float] | None
-"""One number for all joints, or numbers by joint name, or None."""
-PositiveOrNone = Annotated[float, Number(above=0.0, at_most=_GREATEST)] | None
+"""One limit for all joints, limits by joint name, or None."""
+PositiveOrNone = Annotated[float, Number(above=0.0, at_most=_LARGEST_LIMIT)] | None
 """A limit, or None."""
 
 
-class Limits(NamedTuple):
-    """Limits of a flight as arrays, infinite where there is none.
+class FlightLimits(NamedTuple):
+    """Limits of a flight, infinite if there is none.
 
-    Columns: base origin, rotation of the base by wheels, joints.
+    The columns of the first three are the base origin, the rotation of the base by wheels, and the
+    joints.
 
     Attributes:
         velocity: (2 + nd,) [m/s], [rad/s], [rad/s or m/s].
         acceleration: (2 + nd,) [m/s^2], [rad/s^2], [rad/s^2 or m/s^2].
         jerk: (2 + nd,) [m/s^3], [rad/s^3], [rad/s^3 or m/s^3].
         torque: (nd,) [N m or N].
-        velocity_jump: of the base at a corner of its path [m/s].
+        velocity_jump: change of the base's velocity at a corner of its path [m/s].
     """
 
     velocity: Array
@@ -44,7 +44,14 @@ class Limits(NamedTuple):
     velocity_jump: float
 
     def along(self, runs: StraightRuns) -> tuple[Array, Array, Array]:
-        """(r,) most x', x'' and x''' along each run: the tightest of all limits there."""
+        """The tightest limits on x along each run.
+
+        Args:
+            runs: r straight runs.
+
+        Returns:
+            (r,) each: limits on x', x'' and x'''.
+        """
         rates = runs.rates()
         with np.errstate(divide="ignore"):
             x = [np.min(most / rates, axis=1) for most in self[:3]]
@@ -60,15 +67,15 @@ class JointLimit(Rule):
         if value is None:
             return None
         if not isinstance(value, Mapping):
-            return number(what, value, above=0.0, at_most=_GREATEST)
+            return number(what, value, above=0.0, at_most=_LARGEST_LIMIT)
         return {
-            str(name): number(f"{what}.{name}", each, above=0.0, at_most=_GREATEST)
+            str(name): number(f"{what}.{name}", each, above=0.0, at_most=_LARGEST_LIMIT)
             for name, each in value.items()
         }
 
 
 @settings
-class FlightLimits:
+class LimitSettings:
     """Limits of a flight as the user names them; None where there is no limit.
 
     Attributes:
@@ -100,10 +107,10 @@ class FlightLimits:
             raise InvalidInput(
                 "velocity_jump",
                 self.velocity_jump,
-                "0 where a jerk is limited: a jump is a jerk without limit",
+                "0 if a jerk is limited: a jump has an infinite jerk",
             )
 
-    def for_robot(self, robot: SpaceRobot) -> Limits:
+    def for_robot(self, robot: SpaceRobot) -> FlightLimits:
         """The limits as arrays.
 
         Args:
@@ -118,7 +125,7 @@ class FlightLimits:
         def joints(what: str, default: Array = none) -> Array:
             return _joint_array(robot, what, getattr(self, what), default)
 
-        return Limits(
+        return FlightLimits(
             _row(self.base_velocity, self.turn_velocity, joints("joint_velocity", stated)),
             _row(
                 self.thruster_acceleration,
@@ -131,28 +138,37 @@ class FlightLimits:
         )
 
 
-def read_limits(robot: SpaceRobot, **given: Any) -> Limits:  # noqa: ANN401 - see `FlightLimits`
-    """The limits that a user names, checked; see `FlightLimits` and `Plan.timed`.
+def read_limits(robot: SpaceRobot, **given: Any) -> FlightLimits:  # noqa: ANN401 - see `LimitSettings`
+    """The limits that a user names, checked; see `LimitSettings` and `Plan.timed`.
 
     Args:
         robot: the robot.
-        **given: fields of `FlightLimits`.
+        **given: fields of `LimitSettings`.
 
     Raises:
         InvalidInput: a limit that is not allowed, or a joint that the robot does not have.
     """
-    return FlightLimits(**given).for_robot(robot)
+    return LimitSettings(**given).for_robot(robot)
 
 
-def check_limits(limits: Limits, runs: StraightRuns, robot: SpaceRobot, floats: bool) -> None:
-    """Raise `InvalidInput` where something moves whose acceleration is not limited.
+def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, floats: bool) -> None:
+    """Check that everything that moves has a limit on its acceleration.
 
-    There is no default that would suit a robot of one kilogram and one of ten tonnes.
+    There is no default that suits both a robot of one kilogram and one of ten tonnes.
+
+    Args:
+        limits: the limits.
+        runs: the straight runs of the motion.
+        robot: the robot.
+        floats: whether the base has no thrusters.
+
+    Raises:
+        InvalidInput: naming the missing limit.
     """
     moves = np.max(runs.rates(), axis=0) > 0.0
     needed = {"thruster_acceleration": not floats, "turn_acceleration": bool(moves[1])}
-    for k, (name, due) in enumerate(needed.items()):
-        if due and not np.isfinite(limits.acceleration[k]):
+    for k, (name, is_needed) in enumerate(needed.items()):
+        if is_needed and not np.isfinite(limits.acceleration[k]):
             raise InvalidInput(name, None, "a finite number greater than 0")
     for k, name in enumerate(robot.joint_names, start=2):
         if moves[k] and not np.isfinite(limits.acceleration[k]):
@@ -160,14 +176,12 @@ def check_limits(limits: Limits, runs: StraightRuns, robot: SpaceRobot, floats: 
                 f"joint_acceleration, joint {name}", None, "a finite number greater than 0"
             )
         if moves[k] and limits.velocity[k] <= 0.0:
-            raise InvalidInput(
-                f"joint_velocity, joint {name}", 0.0,
-                "greater than 0; the URDF says 0, so it has to be given",
-            )  # fmt: skip
+            allowed = "greater than 0; the URDF's limit is 0, so another one has to be given"
+            raise InvalidInput(f"joint_velocity, joint {name}", 0.0, allowed)
 
 
 def _row(base: float | None, rotation: float | None, joints: Array) -> Array:
-    """(2 + nd,) columns of `Limits`."""
+    """(2 + nd,) columns of `FlightLimits`."""
     first = [np.inf if value is None else value for value in (base, rotation)]
     return np.concatenate([first, joints])
 
