@@ -1,8 +1,9 @@
 """Rotations as unit quaternions (x, y, z, w), and the ZYX angles of Eq. 2.
 
-All functions work on arrays of any leading shape. `scipy.spatial.transform.Rotation` is not used: in
-scipy 1.13, the oldest supported version, it takes one leading dimension at most, and a product of
-small arrays takes several times longer, because each is wrapped in an object. The angles (alpha, beta, gamma) [rad] denote
+All functions work on arrays of any leading shape. `scipy.spatial.transform.Rotation` is not used:
+in scipy 1.13, the oldest supported version, it takes one leading dimension at most, and a product
+of small arrays takes several times longer, because each is wrapped in an object. The angles
+(alpha, beta, gamma) [rad] denote
 
     R = Rz(alpha) Ry(beta) Rx(gamma),
 
