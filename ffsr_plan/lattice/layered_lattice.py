@@ -9,6 +9,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.rotations import level_direction
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.problem import Problem
 
@@ -23,10 +24,7 @@ def path_frame(travel: Array) -> Array:
     Along the world's z axis, x' is the world's x.
     """
     z = travel / np.linalg.norm(travel)
-    x = np.array([-z[1], z[0], 0.0])  # world z cross z'
-    across = float(np.linalg.norm(x))
-    x = x / across if across > 1e-9 else np.array([1.0, 0.0, 0.0])
-    y = np.cross(z, x)
+    y = np.cross(z, level_direction(z))
     y /= np.linalg.norm(y)
     return np.column_stack([np.cross(y, z), y, z])
 

@@ -1,7 +1,7 @@
-"""A satellite put together: arms mounted on a bus, as one plain URDF.
+"""Composition of a satellite: arms mounted on a bus, as one self-contained URDF.
 
-Plain means boxes, spheres and cylinders: Pinocchio's own reader drops capsules, yourdfpy refuses
-them, and addresses of meshes hold on one machine only.
+Meshes become boxes, because the address of a mesh is valid on one machine only. Capsules of an arm
+are kept, although Pinocchio's own reader drops them and yourdfpy refuses them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from ffsr_plan.meshes.hull_reduction import beyond
 from ffsr_plan.meshes.mesh_files import find, hull, surface
 from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
-from ffsr_plan.robots.urdf_validation import LARGEST
+from ffsr_plan.robots.urdf_validation import LARGEST, attribute_numbers
 from ffsr_plan.satellites.arms import Arm, load_arm
 from ffsr_plan.satellites.bus import Bus
 from ffsr_plan.satellites.urdf_xml import (
@@ -97,24 +97,27 @@ def compose(
 ) -> SpaceRobot:
     """Mount arms on a bus.
 
-    `robot.urdf` is the text, `robot.save(path)` writes it. Masses, inertias, joints and limits are
-    the arms' own; links without mass stay without. Boxes, spheres, cylinders and capsules stay what
-    they are (of these, only capsules are unknown to some readers). Meshes give way to boxes, up to
-    three each, which hold all that the mesh encloses; a comment beside them in the URDF names the
-    mesh and how far they reach beyond its convex hull. The file then needs no other.
+    `robot.urdf` is the URDF text, and `robot.save(path)` writes it. Masses, inertias, joints and
+    limits are those of the arms; links without mass stay without mass. Boxes, spheres, cylinders
+    and capsules stay as they are. A mesh is replaced by up to three boxes, which contain all that
+    the mesh encloses; a comment in the URDF states the mesh's name and how far the boxes protrude
+    from its convex hull. The URDF then needs no other file.
 
     Args:
-        bus: the bus, the robot's root link, in whose frame arms are mounted.
+        bus: the bus, the robot's root link, in whose frame the arms are mounted.
         arms: a `Mount` for each arm.
-        name: of the robot.
-        shapes: what collision meshes become: `boxes`, or `meshes`, which keeps them by their
-            absolute path, pictures included: for this machine only.
+        name: name of the robot.
+        shapes: `boxes` to replace collision meshes by boxes, or `meshes` to keep collision and
+            visual meshes by their absolute paths; such a URDF works on this machine only.
         postures: joint values by joint, prefix included [rad or m], by name of the posture.
-        may_touch: more pairs of links, prefixes included, that are not checked against each other.
+        may_touch: further pairs of links, prefixes included, exempt from self-collision.
+
+    Returns:
+        The robot.
 
     Raises:
-        InvalidInput: names that are taken twice, an unknown arm, joint or link, a value outside a
-            joint's limits, a joint that mimics another, a mesh that cannot be read.
+        InvalidInput: names that occur twice, an unknown arm, joint or link, a value outside a
+            joint's limits, a joint that mimics another, or a mesh that cannot be read.
     """
     if not isinstance(bus, Bus):
         raise InvalidInput("bus", bus, "a Bus")
@@ -140,7 +143,19 @@ def put_together(
     postures: Mapping[str, Mapping[str, float]],
     may_touch: Sequence[tuple[str, str]],
 ) -> SpaceRobot:
-    """The same for arms that have been read; see `compose`."""
+    """Compose a satellite from arms that have been read; see `compose`.
+
+    Args:
+        bus: the bus.
+        arms: the arms and their mounts.
+        name: name of the robot.
+        shapes: `boxes` or `meshes`.
+        postures: joint values by joint, by name of the posture [rad or m].
+        may_touch: further pairs of links exempt from self-collision.
+
+    Returns:
+        The robot.
+    """
     robot = ElementTree.Element("robot", name=name)
     robot.extend(bus_elements(bus))
     pairs = []
@@ -161,7 +176,7 @@ def put_together(
 def _check_names(
     robot: ElementTree.Element, parts: list[ElementTree.Element], arm: Arm, prefix: str
 ) -> None:
-    """Raise `InvalidInput` where links or joints have the names of others."""
+    """Check that the names of an arm's links and joints are not yet used."""
     for tag in ("link", "joint"):
         taken = {element.get("name") for element in robot.findall(tag)}
         twice = [
@@ -169,12 +184,12 @@ def _check_names(
         ]
         if twice:
             about = f"{arm.where}, prefix '{prefix}', {tag}s"
-            allowed = f"{tag} names of their own; another prefix gives them some"
+            allowed = f"{tag} names that occur once; give the arm another prefix"
             raise InvalidInput(about, ", ".join(map(str, twice)), allowed)
 
 
 def _renamed(part: ElementTree.Element, arm: Arm, prefix: str, shapes: str) -> ElementTree.Element:
-    """A copy of a link or joint with what a plain URDF needs of it."""
+    """A copy of a link or joint with prefixed names, reduced to what a robot needs."""
     copy = ElementTree.Element(part.tag, name=prefix + str(part.get("name")))
     if part.tag == "joint":
         copy.set("type", str(part.get("type")))
@@ -185,9 +200,9 @@ def _renamed(part: ElementTree.Element, arm: Arm, prefix: str, shapes: str) -> E
         copy.extend(part.findall("origin"))
         copy.extend([] if fixed else [*part.findall("axis"), *part.findall("limit")])
         return copy
-    # said also where it is nothing: engines make up a mass for shapes that have none
-    none = ElementTree.fromstring(_NO_INERTIA)
-    copy.append(none if (inertial := part.find("inertial")) is None else inertial)
+    # links without mass get an explicit zero: engines invent a mass for shapes without inertial
+    massless = ElementTree.fromstring(_NO_INERTIA)
+    copy.append(massless if (inertial := part.find("inertial")) is None else inertial)
     if shapes == "meshes":
         copy.extend(_with_addresses(shape, arm) for shape in part.findall("visual"))
     for collision in part.findall("collision"):
@@ -202,14 +217,14 @@ def _renamed(part: ElementTree.Element, arm: Arm, prefix: str, shapes: str) -> E
 
 
 def _bare(shape: ElementTree.Element) -> ElementTree.Element:
-    """A `<collision>` or `<visual>` of nothing but its place and geometry."""
+    """A copy of a `<collision>` or `<visual>` with its origin and geometry only."""
     copy = ElementTree.Element(shape.tag)
     copy.extend([*shape.findall("origin"), *shape.findall("geometry")])
     return copy
 
 
 def _with_addresses(shape: ElementTree.Element, arm: Arm) -> ElementTree.Element:
-    """The same shape, its mesh addressed by an absolute path where the file is found."""
+    """A copy of a shape, its mesh addressed by an absolute path if the file exists."""
     copy = _bare(shape)
     for mesh in copy.findall("geometry/mesh"):
         path = find(mesh.get("filename", ""), arm.folders)
@@ -221,9 +236,9 @@ def _with_addresses(shape: ElementTree.Element, arm: Arm) -> ElementTree.Element
 def _boxes(
     collision: ElementTree.Element, mesh: ElementTree.Element, arm: Arm, link: str
 ) -> list[ElementTree.Element]:
-    """Boxes instead of a collision mesh, after a comment that says so."""
+    """Boxes that replace a collision mesh, after a comment that names the mesh."""
     where, address = f"{arm.where}, link '{link}', collision mesh", str(mesh.get("filename"))
-    scale = np.array(mesh.get("scale", "1 1 1").split(), dtype=np.float64)
+    scale = attribute_numbers(mesh, "scale", "1 1 1")
     triangles = surface(address, arm.folders, where) * scale
     boxes = boxes_around(triangles)
     corners, _ = hull(triangles.reshape(-1, 3), where, address)
@@ -231,21 +246,21 @@ def _boxes(
     points = [list(product(*pair.T)) for pair in ends]
     excess = max(0.0, float(beyond(corners, np.concatenate(points)).max()))
     frame, rpy = origin(collision), "0 0 0"
-    if (place_of := collision.find("origin")) is not None:
-        rpy = place_of.get("rpy", rpy)
+    if (element := collision.find("origin")) is not None:
+        rpy = element.get("rpy", rpy)
     count = "a box" if len(boxes) == 1 else f"{len(boxes)} boxes"
     about = f"{count} around {Path(address).name}, at most {1e3 * excess:.1f} mm beyond its hull"
-    found = [comment(about)]
+    elements = [comment(about)]
     for low, high in ends:
-        middle = frame.act(0.5 * (low + high)).round(12)
-        found.append(box_shape("collision", (high - low).round(7), middle, rpy))
-    return found
+        center = frame.act(0.5 * (low + high)).round(12)
+        elements.append(box_shape("collision", (high - low).round(7), center, rpy))
+    return elements
 
 
 def _srdf(
     name: str, postures: Mapping[str, Mapping[str, float]], may_touch: Sequence[tuple[str, str]]
 ) -> str:
-    """Postures and exempt pairs as an SRDF; empty where there are none."""
+    """Postures and exempt pairs as an SRDF; empty if there are none."""
     if not isinstance(postures, Mapping):
         raise InvalidInput("postures", postures, "joint values by joint, by name of the posture")
     root = ElementTree.Element("robot", name=name)
