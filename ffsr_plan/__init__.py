@@ -39,7 +39,8 @@ from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.planning.plan import Plan
 from ffsr_plan.planning.planner import plan, refine
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
-from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
+from ffsr_plan.problem.lattice_settings import Axis, Lattice
+from ffsr_plan.problem.posture_axes import PostureAxis
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.single_edge import EdgeProof, certify_edge
 from ffsr_plan.robots.collision_shapes import Replacement

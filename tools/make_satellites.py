@@ -16,8 +16,9 @@ from xml.etree import ElementTree
 
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.satellites.arms import Arm
-from ffsr_plan.satellites.bus import GOLD, NAVY, Bus, Panel, box_link, text
+from ffsr_plan.satellites.bus import Bus, Panel
 from ffsr_plan.satellites.composition import Mount, compose, put_together
+from ffsr_plan.satellites.urdf_xml import GOLD, NAVY, attribute_text, box_link
 
 LIMB = 0.6
 """Length of the spatial arms' limbs [m]."""
@@ -111,7 +112,12 @@ def _limbs() -> Arm:
         ElementTree.SubElement(joint, "parent", link=parent)
         ElementTree.SubElement(joint, "child", link=child)
         ElementTree.SubElement(joint, "axis", xyz=axis)
-        limits = {"lower": text(-2.8), "upper": text(2.8), "effort": "50", "velocity": "0.5"}
+        limits = {
+            "lower": attribute_text(-2.8),
+            "upper": attribute_text(2.8),
+            "effort": "50",
+            "velocity": "0.5",
+        }
         ElementTree.SubElement(joint, "limit", limits)
     return Arm(robot, "mount", (), "limbs", ())
 

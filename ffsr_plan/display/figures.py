@@ -149,7 +149,7 @@ def _new_figure(width: float, height: float) -> tuple[Figure, Axes]:
 
 def _view(plan: PlanData) -> Array:
     """(2, 3) projection onto z' and x' of the path frame; onto the world's x and y on the spot."""
-    travel = plan.problem.travel
+    travel = plan.problem.base_displacement
     if float(np.linalg.norm(travel)) < 1e-9:
         return np.eye(3)[:2]
     frame = path_frame(travel)

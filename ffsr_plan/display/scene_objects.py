@@ -64,9 +64,9 @@ def set_up(
 
 def view_axes(problem: Problem) -> Array:
     """(3, 3) rows: directions in the world that appear to the right, to the back and upwards."""
-    if np.linalg.norm(problem.travel) < 1e-9:
+    if np.linalg.norm(problem.base_displacement) < 1e-9:
         return np.eye(3)
-    frame = path_frame(problem.travel)
+    frame = path_frame(problem.base_displacement)
     return np.array([frame[:, 2], frame[:, 0], frame[:, 1]])
 
 

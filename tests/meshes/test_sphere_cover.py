@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.core.rotations import from_angles, matrix
-from ffsr_plan.meshes.sphere_cover import _winding
+from ffsr_plan.meshes.sphere_cover import winding_number
 
 POSE = {"scale": 2.0, "position": (1.0, -2.0, 0.5), "attitude": (0.7, -0.4, 1.2)}
 MESHES = {
@@ -138,6 +138,16 @@ def test_parts_that_overlap_and_parts_turned_inside_out_are_solid():
     assert covered(fp.Scene.from_mesh(left, 0.1), np.zeros((1, 3)))[0]
 
 
+def test_parts_that_share_an_edge_or_a_face_are_closed():
+    box = MESHES["box"]
+    for shift in ((0.0, 0.4, 0.2), (0.0, 0.0, 0.2), (0.0, 0.0, 0.0)):
+        other = box.copy()
+        other.apply_translation(shift)
+        both = trimesh.Trimesh(np.vstack([box.vertices, other.vertices]), process=False)
+        both.faces = np.vstack([box.faces, other.faces + len(box.vertices)])
+        assert all(covered(fp.Scene.from_mesh(both, 0.2), np.array([[0.0, 0.0, 0.0], shift])))
+
+
 def test_an_open_mesh_is_refused_but_for_its_surface():
     bowl = trimesh.creation.icosphere(2, 0.5).slice_plane((0, 0, 0), (0, 0, 1))
     with pytest.raises(fp.InvalidInput, match=r"edges without a neighbour.*inside=False"):
@@ -172,8 +182,8 @@ def test_random_polyhedra_lie_in_their_spheres(seed):
 
 def test_the_winding_number_of_a_sphere_is_one_inside_and_zero_outside():
     ball = np.asarray(trimesh.creation.icosphere(2).triangles)
-    assert _winding(ball, np.array([0.3, 0.2, -0.4])) == pytest.approx(1.0)
-    assert _winding(ball, np.array([1.3, 0.2, -0.4])) == pytest.approx(0.0, abs=1e-12)
+    assert winding_number(ball, np.array([0.3, 0.2, -0.4])) == pytest.approx(1.0)
+    assert winding_number(ball, np.array([1.3, 0.2, -0.4])) == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -127,7 +127,7 @@ def test_trees_too_deep_or_too_large_for_pinocchio_are_refused():
 
 
 def test_a_text_of_more_than_fifty_million_characters_is_refused(monkeypatch):
-    monkeypatch.setattr(urdf_validation, "_MOST_TEXT", 100)
+    monkeypatch.setattr(urdf_validation, "MOST_CHARACTERS", 100)
     with pytest.raises(fp.InvalidInput, match="made: got '101 characters'; allowed: at most 100"):
         urdf_validation.check_urdf("x" * 101, "made")
 

@@ -72,7 +72,7 @@ def test_the_search_finds_what_a_look_at_all_pairs_finds(seed, count):
         near = query.nearest_at(placed, k // 2, shift)
         links = [robot.link_of(g) for g in robot.collision_model.geometryObjects]
         named = [i for i, name in enumerate(links) if name == near.link]
-        assert each[named, near.other].min() == pytest.approx(each.min(), abs=1e-9)
+        assert each[named, near.obstacle].min() == pytest.approx(each.min(), abs=1e-9)
 
 
 def test_ten_thousand_spheres_give_the_same_clearance_as_all_pairs(robot):

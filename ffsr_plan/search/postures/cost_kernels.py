@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from ffsr_plan.collision.nearest_kernels import _DEPTH, _search
+from ffsr_plan.collision.nearest_kernels import STACK_SIZE, nearest_sphere
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 
 COLLISION_COST = 3.0  # [m] of cost for a collision
@@ -120,7 +120,8 @@ def step_between(indices: IntArray, tail: int, head: int) -> int:
 @njit(cache=True, nogil=True)
 def new_workspace() -> Workspace:
     """Workspace to work in, for one thread."""
-    return Workspace(np.empty(15), np.zeros(3), np.empty(_DEPTH, np.int32), np.empty(_DEPTH))
+    stack, bounds = np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE)
+    return Workspace(np.empty(15), np.zeros(3), stack, bounds)
 
 
 @njit(cache=True, nogil=True)
@@ -166,10 +167,10 @@ def clearance_at(
                 + r[a][2] * (own[11] - center[2])
             )
             frame[12 + a] = own[12 + a]
-        least, nearest = _search(
-            obstacles.nodes, obstacles.children, obstacles.spheres, obstacles.kinds[g], frame,
-            workspace.shift, least, nearest, workspace.stack, workspace.bounds,
-        )  # fmt: skip
+        kind, shift = obstacles.kinds[g], workspace.shift
+        least, nearest = nearest_sphere(
+            obstacles, kind, frame, shift, least, nearest, workspace.stack, workspace.bounds
+        )
     return least
 
 
