@@ -1,8 +1,8 @@
-"""What the benchmark commands share: seeded random scenes, and the files that results go to.
+"""Seeded random scenes and report files, shared by the benchmark commands.
 
-A scene is 4 to 11 spheres beside the way of the planar dual-arm robot, which travels 10 m from the
-start posture of `scenarios/fig2a.toml` to its goal posture; lengths in F count in metres. No
-planner was tuned on them.
+A scene holds 4 to 11 spheres. The planar dual-arm robot moves 10 m past them, from the start
+posture of `scenarios/fig2a.toml` to its goal posture; the length unit of F is one metre. No planner
+was tuned on these scenes.
 """
 
 from collections.abc import Iterable, Iterator
@@ -18,18 +18,22 @@ from ffsr_plan.scene.generators import scatter
 
 FIRST_SEED = 1000
 LATTICE = fp.Lattice(40, fp.Axis(20, 0.15))
-"""40 divisions, 41 nodes a layer."""
+"""40 divisions, 41 nodes in each layer."""
 RESULTS = Path(__file__).parent.parent / "docs" / "benchmarks"
 
 
 class Case(NamedTuple):
-    """A scene that has a path."""
+    """A scene that has a path.
+
+    Attributes:
+        seed: seed of the scene.
+        roadmap: its roadmap. It is shared: use `roadmap.without_edge_states()` for a search.
+        optimum: F of the exact lattice optimum.
+    """
 
     seed: int
     roadmap: fp.Roadmap
-    """Take `roadmap.without_edge_states()` for a search: it is shared."""
     optimum: float
-    """F of the exact lattice optimum."""
 
 
 def random_problem(seed: int, delta: float, lattice: fp.Lattice = LATTICE) -> fp.Problem:
@@ -52,7 +56,7 @@ def _ends() -> fp.Problem:
 
 
 def cases(seeds: Iterable[int], delta: float, lattice: fp.Lattice = LATTICE) -> Iterator[Case]:
-    """The scenes of these seeds, without those that have no path or whose ends collide."""
+    """The scenes of these seeds, except those without a path or with an end in collision."""
     for seed in seeds:
         try:
             roadmap = fp.Roadmap(random_problem(seed, delta, lattice))
@@ -63,9 +67,15 @@ def cases(seeds: Iterable[int], delta: float, lattice: fp.Lattice = LATTICE) -> 
 
 
 def gap(case: Case, roadmap: fp.Roadmap, path: np.ndarray) -> float:
-    """How far a path stays above the optimum, as `Plan.gap` counts it.
+    """Relative excess of a path's F over the optimum, as in `Plan.gap`.
 
-    A path below it would mean that the optimum is wrong: that is an error here, not a gap of zero.
+    Args:
+        case: the scene.
+        roadmap: the roadmap that was searched.
+        path: (m + 1,) nodes.
+
+    Raises:
+        RuntimeError: the path lies below the optimum, so that the optimum is wrong.
     """
     excess = roadmap.objective(path) / case.optimum - 1.0
     if excess < -1e-9:
@@ -74,7 +84,7 @@ def gap(case: Case, roadmap: fp.Roadmap, path: np.ndarray) -> float:
 
 
 def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A markdown table: the first column to the left, all others to the right."""
+    """A markdown table, its first column aligned left and all others right."""
     names = list(header)
     lines = [names, ["---", *["---:"] * (len(names) - 1)], *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)

@@ -1,11 +1,11 @@
-"""Has anything become slower? Ratios to `pin.computeDistances` now, against a baseline.
+"""Comparison of speed with a baseline, as ratios to `pin.computeDistances`.
 
     python -m benchmarks.speed.compare                  # runs pytest benchmarks, then compares
     python -m benchmarks.speed.compare benchmarks.json  # compares what --benchmark-json wrote
     python -m benchmarks.speed.compare --update         # makes what was measured the baseline
 
-Ratios, not seconds: they carry over from one machine to another, as far as anything does. Exit
-status 1 if a ratio grew by more than --limit. Measure a baseline on an idle machine only.
+Ratios depend less on the machine than seconds do. The exit status is 1 if a ratio grew by more than
+--limit. Measure a baseline on an idle machine only.
 """
 
 import argparse
@@ -35,12 +35,12 @@ def measure() -> dict[str, float]:
 
 
 def changes(before: dict[str, float], now: dict[str, float]) -> dict[str, float]:
-    """Factor by which each ratio grew, for the benchmarks that both have."""
+    """Factor by which each ratio grew, for the benchmarks that are in both."""
     return {name: now[name] / before[name] for name in before if name in now}
 
 
 def report(before: dict[str, float], now: dict[str, float], limit: float) -> list[str]:
-    """One line a benchmark: ratio before, ratio now, factor."""
+    """One line for each benchmark: ratio before, ratio now, factor."""
     grown = changes(before, now)
     width = max(map(len, {*before, *now}))
     lines = [f"{'ratio to pin.computeDistances':{width}}   before      now   factor"]
@@ -55,6 +55,7 @@ def report(before: dict[str, float], now: dict[str, float], limit: float) -> lis
 
 
 def main() -> int:
+    """Compare and print; the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("file", type=Path, nargs="?", help="JSON of pytest-benchmark")
     parser.add_argument("--baseline", type=Path, default=BASELINE)

@@ -7,7 +7,7 @@ import ffsr_plan as fp
 
 @pytest.fixture(scope="session")
 def problem():
-    """41 layers of 41 nodes, 7 box links, 6 spheres: the lattice that the figures speak of."""
+    """The reference lattice: 41 layers of 41 nodes, 7 box links, 6 spheres."""
     scenario = fp.load_scenario("fig2a")
     return fp.Problem(
         scenario.robot,

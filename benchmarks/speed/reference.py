@@ -1,4 +1,4 @@
-"""The yardstick of every timing: what `pin.computeDistances` needs for the same configurations."""
+"""Reference time of all benchmarks: `pin.computeDistances` for the same configurations."""
 
 import time
 
@@ -10,7 +10,7 @@ from ffsr_plan.lattice.layered_lattice import LayeredLattice
 
 
 class Reference:
-    """Plain Pinocchio and Coal over all nodes of a lattice, without any of our code in between."""
+    """Plain Pinocchio and Coal over all nodes of a lattice, without code of this package."""
 
     def __init__(self, problem):
         lattice = LayeredLattice(problem)
@@ -52,7 +52,7 @@ class Reference:
 
 
 def record(benchmark, reference):
-    """Note the reference's time, measured just now, and the ratio to it beside a benchmark."""
+    """Measure the reference's time and add it, and the ratio to it, to a benchmark's record."""
     seconds = reference.seconds()
     benchmark.extra_info["compute_distances_seconds"] = seconds
     benchmark.extra_info["ratio"] = benchmark.stats.stats.median / seconds

@@ -1,6 +1,6 @@
-"""What the parts of a plan cost, as ratios to `pin.computeDistances` over the lattice's nodes.
+"""Times of the parts of a plan, as ratios to `pin.computeDistances` over the lattice's nodes.
 
-`pytest benchmarks` runs them; the ratio stands in each benchmark's extra_info.
+`pytest benchmarks` runs them; the ratio is in each benchmark's `extra_info`.
 """
 
 from dataclasses import replace
@@ -34,7 +34,7 @@ def spatial_reference(spatial):
 
 @pytest.fixture(scope="module", autouse=True)
 def compiled(problem):
-    """All kernels, so that no benchmark times their compilation."""
+    """Compile all kernels, so that no benchmark times their compilation."""
     few = replace(problem, lattice=fp.Lattice(8, fp.Axis(8, 0.3)))
     for planner in (fp.AntSystem(cycles=2), fp.MaxMinAntSystem(cycles=2), fp.LatticeOptimum()):
         fp.plan(few, planner)
@@ -57,7 +57,7 @@ def test_node_clearances(benchmark, problem, reference):
 
 
 def test_clearances_of_any_configurations(benchmark, problem, reference):
-    """The same configurations, of which nothing is known: one kinematics each."""
+    """The same configurations, each with its own forward kinematics."""
     lattice = LayeredLattice(problem)
     query = ObstacleQuery(problem.robot, problem.scene)
     layers = [lattice.layer(i) for i in range(1, lattice.divisions)]
@@ -68,7 +68,7 @@ def test_clearances_of_any_configurations(benchmark, problem, reference):
 
 def test_reaction_of_the_nominal_joint_path(benchmark, problem, reference):
     joints = LayeredLattice(problem).nominal.joint_values
-    benchmark(lambda: Reaction(problem.robot, joints))
+    benchmark(lambda: Reaction.along(problem.robot, joints))
     record(benchmark, reference)
 
 
@@ -78,7 +78,7 @@ def test_roadmap_with_all_node_clearances(benchmark, problem, reference):
 
 
 def test_certification_of_1000_edges(benchmark, problem, reference):
-    """Edges between neighbouring offsets all over the lattice, none of them known before."""
+    """Edges between neighbouring offsets all over the lattice, none certified before."""
     edges = [
         (int(layer), int(tail), int(np.clip(tail + step, 0, 40)))
         for layer, tail, step in np.random.default_rng(0).integers(
@@ -98,7 +98,7 @@ def test_certification_of_1000_edges(benchmark, problem, reference):
 
 
 def test_one_cycle_of_the_ant_system(benchmark, problem, reference):
-    """30 ants, once: walking, and certifying the edges that they walk."""
+    """30 ants, one cycle, including the proofs of the edges that they use."""
 
     def fresh():
         return (Roadmap(problem), np.random.default_rng(0)), {}

@@ -1,4 +1,4 @@
-"""Momentum conservation: how the base answers when the arms move.
+"""Momentum conservation: motion of the base caused by motion of the arms.
 
 The centroidal momentum matrix A_g(q) = [A_b A_theta] (6 x nv; linear rows, then angular about the
 centre of mass, world axes) maps velocities to momentum. Zero momentum determines the base.
@@ -20,19 +20,34 @@ from ffsr_plan.robots.robot import SpaceRobot
 def connection(robot: SpaceRobot, q: ArrayLike) -> Array:
     """The mechanical connection A(theta), (3, nd).
 
-    At zero angular momentum the base turns at omega = A theta' [rad/s, base frame], whatever the
-    thrusters do along the translation. A depends on the joints alone, not on the base pose.
+    At zero angular momentum the angular velocity of the base is omega = A theta' [rad/s, base
+    frame], whatever force acts through the centre of mass. A depends on the joints alone, not on
+    the base pose.
 
     Args:
         robot: the robot.
         q: (nq,) configuration.
+
+    Returns:
+        (3, nd) matrix A(theta).
+
+    Raises:
+        InvalidInput: a configuration that the robot does not have.
     """
     q = robot.check_configuration("q", q)
-    return np.asarray(connections(robot, robot.joint_values(q)[None])[0])
+    return connections(robot, robot.joint_values(q)[None])[0]
 
 
 def connections(robot: SpaceRobot, joint_values: Array) -> Array:
-    """A(theta) for many joint values (N, nd) at once: (N, 3, nd); unchecked."""
+    """The mechanical connection at many joint values at once.
+
+    Args:
+        robot: the robot.
+        joint_values: (N, nd) [rad or m]; not checked.
+
+    Returns:
+        (N, 3, nd) matrices A(theta).
+    """
     if robot.nd == 0:
         return np.zeros((len(joint_values), 3, 0))
     angular = angular_maps(robot, joint_values)
@@ -40,38 +55,54 @@ def connections(robot: SpaceRobot, joint_values: Array) -> Array:
 
 
 def angular_maps(robot: SpaceRobot, joint_values: Array) -> Array:
-    """(N, 3, 3 + nd) from base angular velocity (3,) and joint rates (nd,) to angular momentum.
+    """Maps from base angular velocity and joint rates to angular momentum.
 
-    About the centre of mass, in base axes [N m s], for joint values (N, nd); unchecked.
+    Args:
+        robot: the robot.
+        joint_values: (N, nd) [rad or m]; not checked.
+
+    Returns:
+        (N, 3, 3 + nd) maps from (3,) angular velocity and (nd,) joint rates, to the angular
+        momentum about the centre of mass, in base axes.
     """
     data = robot.model.createData()
     configurations = robot.assemble(np.zeros(3), IDENTITY, joint_values)
     angular = np.empty((len(joint_values), 3, robot.model.nv - 3))
     for k, q in enumerate(configurations):
         pin.computeCentroidalMap(robot.model, data, q)
-        angular[k] = data.Ag[3:, 3:]  # the base's linear columns carry no angular momentum
+        angular[k] = data.Ag[3:, 3:]  # the columns of the base's linear velocity are zero
     return angular
 
 
 def centers_of_mass(robot: SpaceRobot, joint_values: Array) -> Array:
-    """(N, 3) centre of mass of the whole robot in base axes, from the base origin [m]; unchecked.
+    """Centre of mass of the whole robot relative to the base origin.
 
     Args:
         robot: the robot.
-        joint_values: (N, nd) [rad or m].
+        joint_values: (N, nd) [rad or m]; not checked.
+
+    Returns:
+        (N, 3) in base axes [m].
     """
     bodies = list(robot.model.inertias)[1:]
     masses = np.array([body.mass for body in bodies])
     levers = np.array([body.lever for body in bodies])
     poses = robot.tree.poses(joint_values)
     centers = poses.origins + turned(poses.rotations, levers)
-    return np.asarray(np.einsum("b,kbi->ki", masses / masses.sum(), centers))
+    return np.einsum("b,kbi->ki", masses / masses.sum(), centers)
 
 
 def attitude_rate_map(robot: SpaceRobot, q: ArrayLike) -> Array:
     """G of Eq. 1, (3, nd): (alpha', beta', gamma') = G theta'.
 
-    G = E(Theta)^-1 A(theta), E from `attitude.angle_rate_matrix`.
+    G = E(Theta)^-1 A(theta), with E from `rotations.angle_rate_matrix`.
+
+    Args:
+        robot: the robot.
+        q: (nq,) configuration.
+
+    Returns:
+        (3, nd) matrix G.
 
     Raises:
         InvalidInput: beta = +-90 degrees, where the ZYX angles are singular.
@@ -93,6 +124,9 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
         q: (nq,) configuration.
         frame: name of a link, joint or other frame of the model.
 
+    Returns:
+        (6, nd) matrix J*.
+
     Raises:
         InvalidInput: unknown frame, with the nearest name.
     """
@@ -107,4 +141,4 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
         model, data, q, model.getFrameId(frame), pin.LOCAL_WORLD_ALIGNED
     )
     base_rate = np.linalg.solve(momentum_map[:, :6], momentum_map[:, 6:])
-    return np.asarray(jacobian[:, 6:] - jacobian[:, :6] @ base_rate)
+    return jacobian[:, 6:] - jacobian[:, :6] @ base_rate

@@ -84,7 +84,7 @@ class Motion:
     @cached_property
     def reaction(self) -> Reaction:
         """The base rotation that the joint path brings about; as one segment if it is straight."""
-        return Reaction(
+        return Reaction.along(
             self.robot,
             self.joint_values[[0, -1]] if self.joints_are_straight else self.joint_values,
         )

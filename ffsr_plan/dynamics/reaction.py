@@ -1,9 +1,9 @@
-"""The rotation of the base along a path of the joints, integrated on the rotation group.
+"""Rotation of the base along a joint path, integrated on the rotation group.
 
 Along a straight joint segment the angular velocity omega(t) = A(theta(t)) theta' is a known, smooth
 function of t that does not depend on the attitude. It is expanded in Legendre polynomials from its
-values at Gauss points; the attitude then follows from R' = R [omega]x by sixth-order Magnus steps
-(Blanes, Casas and Ros 2000), which stay on the group.
+values at Gauss points. The attitude then follows from R' = R [omega]x by sixth-order Magnus steps
+(Blanes, Casas and Ros 2000), whose results are rotations without normalisation.
 """
 
 from __future__ import annotations
@@ -13,75 +13,102 @@ from numpy.polynomial import legendre
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.errors import FfsrPlanError
+from ffsr_plan.core.errors import IntegrationError
 from ffsr_plan.dynamics.momentum import connections
 from ffsr_plan.robots.robot import SpaceRobot
 
-_ORDER = 8
+_ORDER = 8  # Legendre polynomials of each component of omega in a substep
 _X, _WEIGHTS = legendre.leggauss(_ORDER)
 _TO_COEFFICIENTS = (
     legendre.legvander(_X, _ORDER - 1) * _WEIGHTS[:, None] * (np.arange(_ORDER) + 0.5)
 ).T
 _MAGNUS_POINTS = np.array([0.5 - np.sqrt(15) / 10, 0.5, 0.5 + np.sqrt(15) / 10])
 _WHOLE_AND_HALVES = np.array([[0.0, 0.0, 0.5], [1.0, 0.5, 1.0]])  # begin and end of three steps
-_ANGLE_TOLERANCE = 1e-11
-_RATE_TOLERANCE = 1e-11
+_FIRST_SUBSTEP = 0.2  # [rad or m] largest joint step of a substep in the first attempt
+_ANGLE_TOLERANCE = 1e-11  # [rad] error over an edge
+_RATE_TOLERANCE = 1e-11  # last Legendre coefficient, relative to the angular velocity
 _MOST_SUBSTEPS = 4096
 
 
 class Reaction:
-    """Base rotation along joint segments theta_0 -> theta_1 -> ... -> theta_m.
+    """Base rotation along straight joint segments, at zero angular momentum.
 
-    The result does not depend on timing, only on the path. Times run from 0 to 1 along an edge.
+    The rotation depends on the path of the joints only, not on its timing. Times run from 0 to 1
+    along a segment.
 
     Attributes:
-        increments: (m, 4) rotation over each edge, in the base frame at its beginning (xyzw).
-        error: estimated angular error over any one edge [rad].
+        increments: (m, 4) rotation over each segment, in the base frame at its start (xyzw).
+        error: estimated angular error over any one segment [rad].
     """
 
-    def __init__(self, robot: SpaceRobot, joint_values: Array) -> None:
-        """Integrate the reaction.
+    def __init__(
+        self, robot: SpaceRobot, begin: Array, steps: Array, substeps: int | None = None
+    ) -> None:
+        """Integrate the reaction along segments, which need not be connected.
 
         Args:
             robot: the robot.
-            joint_values: (m + 1, nd) the corners of the joint path.
+            begin: (m, nd) joint values at the start of each segment [rad or m].
+            steps: (m, nd) change of the joint values along each segment [rad or m].
+            substeps: number of Magnus steps for each segment. By default it is doubled until the
+                error is below 1e-11 rad.
+
+        Raises:
+            IntegrationError: the error is too large with 4096 substeps.
         """
-        steps: Array = np.diff(joint_values, axis=0)
-        self._integrate(robot, joint_values[:-1], steps)
-
-    @classmethod
-    def of_segments(cls, robot: SpaceRobot, begin: Array, steps: Array) -> Reaction:
-        """The same for segments (m, nd) that do not follow one another, from `begin` by `steps`."""
-        reaction = cls.__new__(cls)
-        reaction._integrate(robot, begin, steps)
-        return reaction
-
-    def _integrate(self, robot: SpaceRobot, begin: Array, steps: Array) -> None:
-        largest = float(np.max(np.abs(steps), initial=0.0))
-        substeps = max(1, int(np.ceil(largest / 0.2)))
-        while True:
+        if substeps is not None:
             self._expand(robot, begin, steps, substeps)
-            if self._converged():
-                break
+            return
+        largest = float(np.max(np.abs(steps), initial=0.0))
+        substeps = max(1, int(np.ceil(largest / _FIRST_SUBSTEP)))
+        self._expand(robot, begin, steps, substeps)
+        while not self._converged():
             substeps *= 2
             if substeps > _MOST_SUBSTEPS:
-                raise FfsrPlanError(
+                raise IntegrationError(
                     f"the base reaction does not converge (joint step {largest:g} in one edge)"
                 )
+            self._expand(robot, begin, steps, substeps)
+
+    @classmethod
+    def along(cls, robot: SpaceRobot, joint_values: Array) -> Reaction:
+        """The reaction along a connected joint path.
+
+        Args:
+            robot: the robot.
+            joint_values: (m + 1, nd) corners of the path [rad or m].
+        """
+        steps: Array = np.diff(joint_values, axis=0)
+        return cls(robot, joint_values[:-1], steps)
 
     def rotation(self, edge: IntArray, time: Array) -> Array:
-        """(N, 4) rotation from the beginning of `edge` (N,) to `time` (N,) on it (xyzw)."""
+        """Rotation from the start of segments.
+
+        Args:
+            edge: (N,) segments.
+            time: (N,) times on them, in [0, 1].
+
+        Returns:
+            (N, 4) rotations (xyzw).
+        """
         scaled = time * self._substeps
         k = np.minimum(scaled.astype(np.int64), self._substeps - 1)
         partial = self._step(self._coefficients[edge, k], np.zeros(len(k)), scaled - k)
         return rotations.multiply(self._starts[edge, k], partial)
 
     def attitudes(self, start: Array) -> Array:
-        """(m + 1, 4) attitudes at the corners, from `start` (4,) on."""
-        chain = [start]
+        """Attitudes at the corners of a connected path.
+
+        Args:
+            start: (4,) attitude at its start (xyzw).
+
+        Returns:
+            (m + 1, 4) attitudes (xyzw).
+        """
+        attitudes = [start]
         for increment in self.increments:
-            chain.append(rotations.multiply(chain[-1], increment))
-        return np.array(chain)
+            attitudes.append(rotations.multiply(attitudes[-1], increment))
+        return np.array(attitudes)
 
     def _expand(self, robot: SpaceRobot, begin: Array, steps: Array, substeps: int) -> None:
         edges = len(steps)
@@ -89,7 +116,7 @@ class Reaction:
         theta = begin[:, None, None] + times[None, :, :, None] * steps[:, None, None]
         maps = connections(robot, theta.reshape(edges * substeps * _ORDER, robot.nd))
         maps = maps.reshape(edges, substeps, _ORDER, 3, robot.nd)
-        # where the arms' shares cancel, their sizes and not the sum's set the rounding
+        # where the arms' contributions cancel, their magnitudes determine the rounding error
         self._scale = float(
             np.max(np.einsum("eknij,ej->ekn", np.abs(maps), np.abs(steps)), initial=0)
         )

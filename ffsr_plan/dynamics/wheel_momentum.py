@@ -1,9 +1,9 @@
-"""What the wheels must store where they hold the attitude.
+"""Angular momentum of reaction wheels that hold the attitude.
 
-Thrusters act through the centre of mass, so they turn nothing; the robot starts at rest with
-nothing stored. Hence the wheels store, at any time, the opposite of the angular momentum that base
-and arms have about the centre of mass. Along a path that is a momentum per unit of path, the map of
-`momentum.angular_maps` times turn and joint steps; a time law makes it N m s.
+Thrusters act through the centre of mass and exert no moment about it. The robot starts at rest with
+zero wheel momentum. So the wheel momentum is minus the angular momentum of base and arms about the
+centre of mass at any time. Along a path it is a momentum per unit of path, the map of
+`momentum.angular_maps` times the rotation and joint steps; a time law turns it into N m s.
 """
 
 from __future__ import annotations
@@ -21,29 +21,32 @@ from ffsr_plan.dynamics.momentum import angular_maps
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.kinematics import turned
 
-_SAMPLES = 1001  # a smooth peak is missed by some 1e-5 of its height
+_SAMPLES = 1001  # default number of times; the error of a smooth peak is about 1e-5 of it
 
 
 class WheelMomentum(NamedTuple):
     """Angular momentum stored in the wheels at N times.
 
-    Its sign: the wheels' own, the opposite of that of base and arms. Their torque on the base is
+    It is the wheels' own momentum, minus that of base and arms. The wheels' torque on the base is
     minus its derivative in world axes.
+
+    Attributes:
+        times: (N,) [s].
+        parameters: (N,) path parameters s in [0, 1], as in `Plan.at`.
+        vectors: (N, 3) base axes, in which wheels are mounted [N m s].
+        world: (N, 3) the same in world axes [N m s].
     """
 
     times: Array
-    """(N,) [s]."""
     parameters: Array
-    """(N,) path parameters s in [0, 1], as `Plan.at` takes them."""
     vectors: Array
-    """(N, 3) base axes, as wheels are mounted [N m s]."""
     world: Array
-    """(N, 3) the same in world axes [N m s]."""
 
     @property
     def axis_peaks(self) -> Array:
         """(3,) largest magnitude about each base axis, over the times [N m s]."""
-        return np.asarray(np.max(np.abs(self.vectors), axis=0))
+        peaks: Array = np.max(np.abs(self.vectors), axis=0)
+        return peaks
 
     @property
     def peak(self) -> float:
@@ -54,44 +57,63 @@ class WheelMomentum(NamedTuple):
 def wheel_momentum(
     motion: Motion, duration: float, times: ArrayLike | None = None
 ) -> WheelMomentum:
-    """See `Plan.wheel_momentum`."""
+    """Wheel momentum of a motion with a quintic time law from rest to rest.
+
+    Args:
+        motion: a motion whose attitude is held by wheels.
+        duration: duration of the motion [s].
+        times: (N,) times from 0 to the duration [s]; by default 1001 equally spaced ones.
+
+    Returns:
+        The momentum at these times, in base and world axes.
+
+    Raises:
+        InvalidInput: a motion without wheels, a duration that is not positive, or times outside
+            the motion.
+    """
     if motion.mode.attitude_reacts:
         raise InvalidInput(
-            "wheel_momentum: mode", motion.mode, "'attitude-held'; otherwise there are no wheels"
+            "wheel_momentum: mode", motion.mode, "'attitude-held'; other modes have no wheels"
         )
     duration = number("duration", duration, above=0.0)
-    clock = np.linspace(0.0, duration, _SAMPLES) if times is None else _clock(times, duration)
-    s, rate = rest_to_rest(clock / duration)
+    instants = np.linspace(0.0, duration, _SAMPLES)
+    if times is not None:
+        instants = _checked_times(times, duration)
+    s, rate = rest_to_rest(instants / duration)
     edge = np.minimum((s * motion.edges).astype(np.int64), motion.edges - 1)
     time = s * motion.edges - edge
     edge_rate = rate * motion.edges / duration
     stored = -edge_rate[:, None] * _momentum_along(motion, edge, time)
     pose = rotations.matrix(motion.at(edge, time)[:, 3:7])
-    return WheelMomentum(clock, s, stored, turned(pose, stored))
+    return WheelMomentum(instants, s, stored, turned(pose, stored))
 
 
 def rest_to_rest(u: Array) -> tuple[Array, Array]:
-    """The law s = 10 u^3 - 15 u^4 + 6 u^5 and ds/du, u in [0, 1]; s' = s'' = 0 at both ends.
+    """The quintic law s = 10 u^3 - 15 u^4 + 6 u^5, with s' = s'' = 0 at both ends.
 
-    The rate is largest in the middle, 15/8.
+    Args:
+        u: (N,) time as a share of the duration, in [0, 1].
+
+    Returns:
+        (N,) s, and (N,) its rate ds/du, at most 15/8 (at u = 1/2).
     """
     s = np.minimum(u**3 * (10.0 + u * (6.0 * u - 15.0)), 1.0)
     return s, 30.0 * (u * (1.0 - u)) ** 2
 
 
 def _momentum_along(motion: Motion, edge: IntArray, time: Array) -> Array:
-    """(N, 3) of base and arms about the centre of mass, base axes [kg m^2 rad per edge]."""
+    """(N, 3) momentum of base and arms about the centre of mass, base axes [kg m^2 rad / edge]."""
     steps = np.diff(motion.joint_values, axis=0)[edge]
     maps = angular_maps(motion.robot, motion.joint_values[edge] + time[:, None] * steps)
-    turns = np.broadcast_to(motion.turn, (len(edge), 3))
-    return turned(maps, np.concatenate([turns, steps], axis=1))
+    angular_velocity = np.broadcast_to(motion.turn, (len(edge), 3))
+    return turned(maps, np.concatenate([angular_velocity, steps], axis=1))
 
 
-def _clock(times: ArrayLike, duration: float) -> Array:
-    clock = finite_array("times", times, (-1,))
-    if clock.size == 0 or np.any((clock < 0.0) | (clock > duration)):
+def _checked_times(times: ArrayLike, duration: float) -> Array:
+    checked = finite_array("times", times, (-1,))
+    if checked.size == 0 or np.any((checked < 0.0) | (checked > duration)):
         raise InvalidInput("times", times, f"at least one time, all from 0 to {duration:g} s")
-    return clock
+    return checked
 
 
 __all__ = ["WheelMomentum", "rest_to_rest", "wheel_momentum"]

@@ -1,3 +1,3 @@
-"""What is known of an edge: nothing, proven free, or refused."""
+"""States of an edge: unknown, proven free, or refused."""
 
 UNKNOWN, FREE, REFUSED = 0, 1, -1

@@ -53,7 +53,7 @@ class LayeredLattice:
             raise InvalidInput(
                 "lattice",
                 f"{nodes} nodes a layer and {lattice.divisions} divisions",
-                f"divisions x nodes^2 of at most {MOST_EDGES:.0e}, for the memory's sake",
+                f"divisions x nodes^2 of at most {MOST_EDGES:.0e}, to limit memory use",
             )
         counts = [np.arange(-a.half_count, a.half_count + 1) for a in axes]
         grids = np.meshgrid(*counts, indexing="ij")

@@ -1,4 +1,4 @@
-"""Clearances of a lattice's nodes: exact where asked for, bounded from above elsewhere.
+"""Clearances of a lattice's nodes: exact where evaluated, bounded from above elsewhere.
 
 Nodes of a layer differ by a translation, and a translation by x changes a clearance by x at most.
 So every node that was evaluated bounds its neighbours, and an exact search over optimistic bounds
@@ -31,26 +31,26 @@ class NodeClearances:
         ends = np.array([0, m])
         self.bounds[ends], self.known[ends] = -np.inf, True
         self.queries = 0
-        self.bounds[ends, origin] = self._ask(ends, np.zeros((2, 3)))
+        self.bounds[ends, origin] = self._evaluate(ends, np.zeros((2, 3)))
         self._exact: Array | None = None
 
-    def _ask(self, layers: IntArray, offsets: Array) -> Array:
+    def _evaluate(self, layers: IntArray, offsets: Array) -> Array:
         before = self._prover.queries
-        found = self._prover.clearances(layers, offsets)
+        clearances = self._prover.clearances(layers, offsets)
         self.queries += self._prover.queries - before  # none in an empty scene
-        return found
+        return clearances
 
     def learn(self, path: IntArray) -> IntArray:
-        """Evaluate the nodes of a path (m + 1,); the layers about which something new is known."""
+        """Evaluate the nodes of a path (m + 1,); the layers whose bounds have changed."""
         layers = np.flatnonzero(~self.known[np.arange(len(path)), path])
         if not len(layers):
             return layers
         nodes = path[layers]
-        found = self._ask(layers, self._lattice.offsets[nodes])
-        reach = found[:, None] + self._lattice.distances[nodes]
+        exact = self._evaluate(layers, self._lattice.offsets[nodes])
+        bounds = exact[:, None] + self._lattice.distances[nodes]
         at = self.bounds[layers]
-        self.bounds[layers] = np.where(self.known[layers], at, np.minimum(at, reach))
-        self.bounds[layers, nodes], self.known[layers, nodes] = found, True
+        self.bounds[layers] = np.where(self.known[layers], at, np.minimum(at, bounds))
+        self.bounds[layers, nodes], self.known[layers, nodes] = exact, True
         return layers
 
     def exact(self) -> Array:
@@ -59,7 +59,7 @@ class NodeClearances:
             for i in range(1, self._lattice.divisions):
                 missing = np.flatnonzero(~self.known[i])
                 layers = np.full(len(missing), i)
-                found = self._ask(layers, self._lattice.offsets[missing])
-                self.bounds[i, missing], self.known[i, missing] = found, True
+                self.bounds[i, missing] = self._evaluate(layers, self._lattice.offsets[missing])
+                self.known[i, missing] = True
             self._exact = frozen(np.where(np.isneginf(self.bounds), np.nan, self.bounds))
         return self._exact

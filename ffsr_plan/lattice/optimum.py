@@ -1,16 +1,16 @@
 """The exact lattice optimum: a shortest path over the layers, edges certified on demand.
 
 F is additive over nodes and edges on a lattice whose nodes have one configuration each. Unproven
-edges are taken as free, nodes not yet evaluated as clear as their neighbours allow; the shortest
-path is looked at, and where it turns out worse than thought the search is taken up again behind it,
-until a path holds. Since both assumptions can only shorten a path, the first one that holds is the
-optimum (lazy search).
+edges are assumed free, and nodes not yet evaluated are assumed to have the largest clearance that
+their neighbours allow. The nodes and edges of the shortest path are then evaluated; where one is
+worse than assumed, the search resumes from its layer. Both assumptions can only shorten a path, so
+the first path that holds is the optimum (lazy search).
 """
 
 from __future__ import annotations
 
 from ffsr_plan.core.arrays import IntArray
-from ffsr_plan.core.errors import PlanningError
+from ffsr_plan.core.errors import InternalError
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.lattice.shortest_path import lazy_shortest_path
 
@@ -37,5 +37,5 @@ def lattice_optimum(roadmap: Roadmap) -> IntArray:
         edge_costs, node_costs, roadmap.status, roadmap.lattice.origin, objection
     )
     if path is None:
-        raise roadmap.no_path() or PlanningError("the lattice optimum was lost")
+        raise roadmap.no_path() or InternalError("no shortest path, but the roadmap has a path")
     return path

@@ -1,9 +1,9 @@
-"""Beyond the lattice: from a certified lattice path to continuous offsets, F never higher.
+"""Refinement of a certified lattice path to offsets between the nodes; F never rises.
 
 Lattice paths are a little too long because their slopes come in steps. On four levels, each with
 half the spacing of the one before, every layer is given the offsets around its present one, and the
-exact optimum over them is taken, edges certified lazily; again, while F falls and the path leans on
-the rim of what it was given.
+exact optimum over them is taken, edges certified lazily; this is repeated while F falls and a
+node lies on the rim of its offsets.
 """
 
 from __future__ import annotations
@@ -161,7 +161,7 @@ class _Descent:
 
     def _clearances(self, choices: IntArray, present: Flags) -> Array:
         """(m + 1, w) clearances, -inf where an offset is not allowed; each asked for once."""
-        found = np.full(present.shape, -np.inf)
+        clearances = np.full(present.shape, -np.inf)
         for i, k in zip(*np.nonzero(present), strict=True):
             key = (int(i), choices[i, k].tobytes())
             if key not in self._known:
@@ -169,8 +169,8 @@ class _Descent:
                 before = self._prover.queries
                 self._known[key] = float(self._prover.clearances(np.array([i]), at)[0])
                 self._node_queries += self._prover.queries - before
-            found[i, k] = self._known[key]
-        return found
+            clearances[i, k] = self._known[key]
+        return clearances
 
     def _objection(
         self, path: IntArray, choices: IntArray, offsets: Array, clearances: Array, status: States

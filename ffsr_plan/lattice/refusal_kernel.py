@@ -1,12 +1,11 @@
-"""What a refused edge says of those beside it, compiled; imported when it is first needed."""
+"""Compiled marking of edges close to a refused edge."""
 
 from __future__ import annotations
 
 from numba import njit
 
 from ffsr_plan.core.arrays import Array, States
-
-REFUSED = -1
+from ffsr_plan.lattice.edge_states import REFUSED
 
 
 @njit(cache=True, nogil=True)

@@ -1,4 +1,4 @@
-"""`Roadmap`: a lattice and what is known of its nodes and edges, found out when it is asked for."""
+"""`Roadmap`: a lattice with the states of its nodes and edges, evaluated on demand."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from ffsr_plan.proof.prover import Prover
 
 
 class Roadmap:
-    """Nodes and edges of a lattice, and what is known of them.
+    """Nodes and edges of a lattice with their clearances and states.
 
     Attributes:
         lattice: the lattice.
         prover: clearances and proofs for any offsets.
-        status: (m, n, n) what is known of each edge: UNKNOWN, FREE or REFUSED.
+        status: (m, n, n) state of each edge: UNKNOWN, FREE or REFUSED.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -34,13 +34,15 @@ class Roadmap:
 
         Raises:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
-            NoPath: if the arms collide with each other on the way, at every node alike.
+            NoPath: the arms collide with each other on an edge of the nominal motion, whatever the
+                offsets.
         """
         if problem.lattice.postures:
             raise InvalidInput(
-                "lattice postures", len(problem.lattice.postures),
-                "none: with them a node has no one attitude, and no roadmap can be made",
-            )  # fmt: skip
+                "lattice postures",
+                len(problem.lattice.postures),
+                "none: with them a node has no single attitude, which a roadmap needs",
+            )
         self.problem = problem
         self.lattice = LayeredLattice(problem)
         self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)
@@ -176,15 +178,15 @@ class Roadmap:
 
     def _closing(self, layer: int) -> tuple[int | str, ...]:
         """What blocks the edges of a layer that were looked at, and the nodes they lead to."""
-        offsets, found = self.lattice.offsets, set[int | str]()
+        offsets, names = self.lattice.offsets, set[int | str]()
         for (i, tail, head), verdict in self._verdicts.items():
             if i == layer and not verdict.free:
                 near = self.prover.nearest(i, offsets[tail], offsets[head], verdict.time)
-                found.add(near.other)
+                names.add(near.other)
         if layer + 1 < self.lattice.divisions:
             for at in offsets[~self.admissible[layer + 1]]:
-                found.add(self.prover.nearest(layer + 1, at, at, 0.0).other)
-        return tuple(sorted(found, key=lambda name: (isinstance(name, str), name)))
+                names.add(self.prover.nearest(layer + 1, at, at, 0.0).other)
+        return tuple(sorted(names, key=lambda name: (isinstance(name, str), name)))
 
 
 def rule_out(
@@ -192,8 +194,8 @@ def rule_out(
 ) -> None:
     """Refuse every edge of a layer that passes, at the same time, within the depth just met.
 
-    Attitude and joints are the same there, and a translation shorter than the penetration depth
-    does not lead out of the obstacle.
+    Attitude and joints are the same at that time, and a translation shorter than the penetration
+    depth does not leave the obstacle.
 
     Args:
         status: (j, k) of the layer's edges, updated.

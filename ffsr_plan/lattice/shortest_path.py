@@ -1,4 +1,4 @@
-"""Lazy shortest path over layers: nodes and edges are evaluated when a candidate path uses them."""
+"""Lazy shortest path over layers: nodes and edges are evaluated only on candidate paths."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ def lazy_shortest_path(
     origin: int,
     objection: Callable[[IntArray], int | None],
 ) -> IntArray | None:
-    """The shortest path over layers whose nodes and edges are looked at when it uses them.
+    """The shortest path over layers whose nodes and edges are evaluated on candidate paths.
 
     Args:
         edge_costs: (m, n, n), or (1, n, n) where all layers are alike.
         node_costs: (m + 1, n), infinite where a node may not be entered; optimistic at first.
-        status: (m, n, n) what is known of each edge; refused ones are left out.
+        status: (m, n, n) state of each edge; refused ones are left out.
         origin: the node of layers 0 and m.
-        objection: looks at the nodes and edges of a path (m + 1,). Where one turns out worse than
-            thought it corrects `node_costs` or `status`, and returns the first layer whose outgoing
-            edges have to be gone through again; None if the path holds.
+        objection: evaluates the nodes and edges of a path (m + 1,). Where one is worse than
+            assumed it corrects `node_costs` or `status`, and returns the first layer whose outgoing
+            edges have to be searched again; None if the path holds.
 
     Returns:
         (m + 1,) nodes, or None if there is no path.

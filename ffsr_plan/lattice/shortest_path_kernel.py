@@ -1,4 +1,4 @@
-"""Shortest ways through layers, compiled; imported when they are first needed."""
+"""Compiled shortest paths through layers."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ import numpy as np
 from numba import njit
 
 from ffsr_plan.core.arrays import Array, IntArray, States
-
-_REFUSED = -1
+from ffsr_plan.lattice.edge_states import REFUSED
 
 
 @njit(cache=True, nogil=True)
@@ -19,15 +18,15 @@ def extend(
     costs: Array,
     before: IntArray,
 ) -> None:
-    """Shortest ways from the start, layer after layer from `first` on (Bellman).
+    """Shortest paths from the start, layer after layer from `first` on (Bellman).
 
     Args:
-        first: the first layer whose edges are to be looked at; `costs` hold up to it.
+        first: the first layer whose edges are evaluated; `costs` are valid up to it.
         edge_costs: (m, n, n) or (1, n, n).
         node_costs: (m + 1, n), infinite where a node may not be entered.
         status: (m, n, n); refused edges are left out.
         costs: (m + 1, n) least cost of reaching each node, updated.
-        before: (m + 1, n) the node that the shortest way comes from, updated.
+        before: (m + 1, n) the node that the shortest path comes from, updated.
     """
     m, n = len(status), status.shape[1]
     for i in range(first, m):
@@ -39,7 +38,7 @@ def extend(
                 continue
             for k in range(n):
                 total = so_far + edges[j, k]
-                if total < costs[i + 1, k] and status[i, j, k] != _REFUSED:
+                if total < costs[i + 1, k] and status[i, j, k] != REFUSED:
                     costs[i + 1, k] = total
                     before[i + 1, k] = j
         for k in range(n):

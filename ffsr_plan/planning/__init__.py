@@ -1,1 +1,1 @@
-"""Plans: the public `plan`, the `Plan` that it returns, and its file."""
+"""Planning: `plan`, `refine`, and the `Plan` that they return."""

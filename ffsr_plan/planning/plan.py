@@ -1,4 +1,4 @@
-"""`Plan`: a certified motion with everything that can be done with it."""
+"""`Plan`: a certified motion with its verification, files, trajectories and pages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ffsr_plan.core.formatting import proven
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.trajectory.csv_tables import path_table, write_csv
-from ffsr_plan.trajectory.limits import PerJoint, read_limits
+from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
 from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Plan(PlanData):
     ) -> TimedPlan:
         """The plan flown as fast as limits allow, from rest to rest, on exactly the proven path.
 
-        It rests wherever the path has a corner: there a velocity would have to change at once.
+        It rests at every corner of the path, where a velocity would have to change at once.
         What is not named is not limited, but for `joint_velocity`, which is the URDF's. Limits for
         joints are one number for all of them, or numbers by joint name.
 
@@ -55,8 +55,8 @@ class Plan(PlanData):
             joint_torque: [N m or N].
             joint_jerk: [rad/s^3 or m/s^3].
             thruster_jerk: of the base origin [m/s^3].
-            turn_velocity: of a base that wheels turn [rad/s].
-            turn_acceleration: of a base that wheels turn [rad/s^2].
+            turn_velocity: angular velocity of a base that wheels rotate [rad/s].
+            turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
             velocity_jump: by how much thrusters may change the velocity of the base in one pulse
                 [m/s]; instead of resting at a corner of its path, the robot then passes it at the
                 speed at which the pulse is as large. A pulse takes time, so that the corner is cut
@@ -65,8 +65,8 @@ class Plan(PlanData):
 
         Raises:
             InvalidInput: a limit that cannot be, an acceleration that is needed and not given,
-                pulses that the proven clearance has no room for, or a plan along which nothing
-                moves.
+                pulses that cut a corner by more than the proven clearance, or a plan without any
+                motion.
         """
         limits = read_limits(
             self.problem.robot,
@@ -126,8 +126,8 @@ class Plan(PlanData):
     def to_csv(self, path: str | Path, samples: int | None = None) -> None:
         """Write the path as a table, one configuration a row, reaction included, units on top.
 
-        Columns: path parameter, base origin in the world, its quaternion and ZYX angles, joints. A
-        file that is there is replaced. `timed(...).to_csv` writes a trajectory.
+        Columns: path parameter, base origin in the world, its quaternion and ZYX angles, joints. An
+        existing file is replaced. `timed(...).to_csv` writes a trajectory.
 
         Args:
             path: of the file.

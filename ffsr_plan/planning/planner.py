@@ -1,4 +1,4 @@
-"""`plan` and `refine`: from a problem to a certified plan, and from a plan to a shorter one."""
+"""`plan` and `refine`: from a problem to a certified plan, and from a plan to a better one."""
 
 from __future__ import annotations
 

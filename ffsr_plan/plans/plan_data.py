@@ -120,7 +120,7 @@ class PlanData:
     def wheel_momentum(self, duration: float, times: ArrayLike | None = None) -> WheelMomentum:
         """Angular momentum that the wheels of an attitude-held plan must store along the motion.
 
-        The plan is a path; here it is flown from rest to rest by s = 10 u^3 - 15 u^4 + 6 u^5,
+        The plan is a path; the time law flies it from rest to rest by s = 10 u^3 - 15 u^4 + 6 u^5,
         u = t / duration. All momenta go as 1 / duration, for any time law s(t) as ds/dt.
 
         Args:
@@ -128,6 +128,6 @@ class PlanData:
             times: (N,) from 0 to the duration [s]; without, 1001 evenly spaced.
 
         Raises:
-            InvalidInput: another mode (there are no wheels), or a duration or times that cannot be.
+            InvalidInput: a mode without wheels, or a duration or times that are not allowed.
         """
         return wheel_momentum(self.motion, duration, times)

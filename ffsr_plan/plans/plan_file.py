@@ -125,19 +125,23 @@ def _robot_from_dict(data: dict[str, Any]) -> SpaceRobot:
             "disabled_pairs of the plan", data["disabled_pairs"],
             f"those of its SRDF: {remade['disabled_pairs']}",
         )  # fmt: skip
-    told, due = data["replacements"], remade["replacements"]
-    if len(told) != len(due) or not all(map(_same_replacement, told, due)):
-        raise InvalidInput("replacements of the plan", told, f"those of its URDF and meshes: {due}")
+    stated, expected = data["replacements"], remade["replacements"]
+    if len(stated) != len(expected) or not all(map(_same_replacement, stated, expected)):
+        raise InvalidInput(
+            "replacements of the plan", stated, f"those of its URDF and meshes: {expected}"
+        )
     return robot
 
 
-def _same_replacement(told: dict[str, Any], due: dict[str, Any]) -> bool:
+def _same_replacement(stated: dict[str, Any], expected: dict[str, Any]) -> bool:
     """Whether two records agree but for rounding, which may also change a number of vertices."""
-    if told.keys() != due.keys() or any(told[k] != due[k] for k in ("link", "number", "shape")):
+    same = ("link", "number", "shape")
+    if stated.keys() != expected.keys() or any(stated[k] != expected[k] for k in same):
         return False
-    kinds = [re.sub(r"\d+", "n", record["by"]) for record in (told, due)]
-    excess = number("excess of the plan's replacements", told["excess"], at_least=0.0)
-    return kinds[0] == kinds[1] and abs(excess - due["excess"]) <= 1e-9 + 1e-6 * due["excess"]
+    kinds = [re.sub(r"\d+", "n", record["by"]) for record in (stated, expected)]
+    excess = number("excess of the plan's replacements", stated["excess"], at_least=0.0)
+    difference = abs(excess - expected["excess"])
+    return kinds[0] == kinds[1] and difference <= 1e-9 + 1e-6 * expected["excess"]
 
 
 def from_dict(data: dict[str, Any]) -> PlanData:
@@ -342,7 +346,7 @@ def digest(data: dict[str, Any]) -> str:
 def _whole(values: list[int]) -> NDArray[np.int64]:
     found = np.array(values, dtype=np.float64)
     if not np.all(np.abs(found) < 2.0**53) or np.any(found != np.round(found)):
-        raise InvalidInput("plan", values, "whole numbers there")
+        raise InvalidInput("plan", values, "integers")
     return frozen(found.astype(np.int64))
 
 
@@ -353,5 +357,5 @@ def _without_infinity(values: NDArray[np.float64]) -> list[float | None]:
 def _with_infinity(values: list[float | None]) -> NDArray[np.float64]:
     found = np.array([np.inf if v is None else v for v in values], dtype=np.float64)
     if np.any(np.isnan(found)):
-        raise InvalidInput("plan", values, "numbers there")
+        raise InvalidInput("plan", values, "numbers")
     return frozen(found)

@@ -284,5 +284,5 @@ def _turn_by_way(robot: SpaceRobot, begin: Array, change: Array) -> Array:
     """D, (3, nd): turn at the end of the path, in its base axes, for each unit of joint change."""
     steps = change + _DIFFERENCE * np.vstack([np.zeros(robot.nd), np.eye(robot.nd)])
     begins = np.tile(begin, (len(steps), 1))
-    ends = Reaction.of_segments(robot, begins, steps).increments
+    ends = Reaction(robot, begins, steps).increments
     return np.asarray(log(multiply(inverse(ends[:1]), ends[1:])).T / _DIFFERENCE)

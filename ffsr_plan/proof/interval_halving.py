@@ -1,10 +1,10 @@
-"""Edges proven free by interval halving (Schwarzer, Saha and Latombe 2005).
+"""Interval halving: proofs that an edge is free (Schwarzer, Saha and Latombe 2005).
 
 If a link's clearances at both ends of an interval sum to more than any of its points can travel in
-it, none can have reached an obstacle in between: to touch, it would have had to cover the clearance
-at one end to get there and that at the other to get back. Where the sums do not suffice, Coal is
-asked at the middle, and both halves are looked at again. Links that must not touch each other are
-judged by the same criterion, in pairs.
+it, the link touches no obstacle inside the interval: to touch, a point would have to cover the
+clearance at one end to get there, and that at the other end to get back. If the sums do not
+suffice, the clearance at the middle is computed and both halves are examined. Pairs of links that
+must not touch each other are judged by the same criterion.
 """
 
 from __future__ import annotations
@@ -17,53 +17,66 @@ import numpy as np
 from ffsr_plan.core.arrays import Array
 
 ROUNDING = 1e-9
-"""Travel [m] added to every bound: far above the errors of distances within `inputs.FARTHEST`."""
+"""Length [m] added to every travel bound: far above the rounding errors of distances at coordinates
+up to `core.checks.FARTHEST`."""
 
 
 class Edge(Protocol):
-    """What halving asks of an edge, in times from 0 to 1. Its parts are links, or pairs of them."""
+    """An edge run from time 0 to 1. Its parts are links, or pairs of links.
+
+    Attributes:
+        speed: bound on the travel of any part per unit of time [m]: a first, coarse bound.
+        rounding: length added to every travel bound for floating-point errors [m].
+    """
 
     @property
     def speed(self) -> float:
-        """Distance [m] that no part outruns per unit of time: a first, quick bound."""
+        """Bound on the travel of any part per unit of time [m]."""
 
     @property
     def rounding(self) -> float:
-        """Travel [m] to be added to every bound, for the errors of floating-point numbers."""
+        """Length added to every travel bound for floating-point errors [m]."""
 
     def clearance(self, time: float) -> float:
-        """Least distance over all parts [m], by Coal."""
+        """Least distance over all parts, computed by Coal [m]."""
 
     def parts(self, time: float) -> Array:
         """(p,) lower bound on the distance of each part [m]."""
 
     def travel(self, begin: float, end: float) -> Array:
-        """(p,) bound on how far each part travels between two times [m]."""
+        """(p,) upper bound on the travel of each part between two times [m]."""
 
 
 class Verdict(NamedTuple):
-    """What interval halving found out about one edge."""
+    """Result of interval halving for one edge.
+
+    Attributes:
+        free: whether the edge is proven free.
+        least_clearance: least clearance computed [m]; elsewhere it is only proven positive.
+        time: the time in [0, 1] of that clearance.
+        queries: number of configurations between the ends at which a clearance was computed.
+    """
 
     free: bool
     least_clearance: float
-    """The least clearance met [m]; what lies between was only shown to be greater than zero."""
     time: float
-    """Where on the edge that was, in [0, 1]."""
     queries: int
-    """Configurations between the ends at which Coal was asked."""
 
 
 def certify(edge: Edge, ends: tuple[float, float], tolerance: float) -> Verdict:
-    """Prove that an edge keeps clear, or find where it does not.
+    """Prove that an edge is free of collisions, or refuse it.
 
-    Touching counts as blocked. An edge is refused only where its clearance is at most `tolerance`
-    somewhere (or the edge's margin for rounding, where that is more); with more than that all
-    along, it is always proven free.
+    Touching counts as a collision. An edge is refused only if its clearance is at most `tolerance`
+    somewhere (or the edge's rounding, if that is larger). An edge whose clearance is larger
+    everywhere is always proven free.
 
     Args:
         edge: the edge.
-        ends: clearances [m] at times 0 and 1.
-        tolerance: clearance [m] below which an edge may be refused.
+        ends: clearances at times 0 and 1 [m].
+        tolerance: clearance below which an edge may be refused [m].
+
+    Returns:
+        The verdict, with the least clearance that was computed.
     """
     least, queries = min((ends[0], 0.0), (ends[1], 1.0)), 0
     if least[0] <= 0.0:
@@ -89,43 +102,43 @@ def certify(edge: Edge, ends: tuple[float, float], tolerance: float) -> Verdict:
 
 
 def clearance_bound(
-    edge: Edge, ends: tuple[float, float], met: float, slack: float
+    edge: Edge, ends: tuple[float, float], least: float, precision: float
 ) -> tuple[float, float]:
-    """A proven lower bound on the clearance along an edge of a path, near the path's least.
+    """A proven lower bound on the clearance along an edge of a path.
 
-    The interval whose bound is lowest is halved until that bound is close to the least clearance
-    met on the path: within the share `slack` of it, so that a path that keeps clear gets a bound
-    greater than zero. An edge that is clear by more than that is left at once.
+    The interval with the lowest bound is halved until that bound is within the share `precision`
+    of the least clearance computed on the path. So a path whose clearance is positive gets a
+    positive bound. An edge whose clearance is larger than the path's least is finished at once.
 
     Args:
         edge: the edge.
-        ends: clearances [m] at times 0 and 1.
-        met: the least clearance met on the path so far.
-        slack: between 0 and 1.
+        ends: clearances at times 0 and 1 [m].
+        least: least clearance computed on the path so far [m].
+        precision: relative precision of the bound, between 0 and 1.
 
     Returns:
-        The bound, and the least clearance met by now.
+        The bound [m], and the least clearance computed on the path, this edge included [m].
     """
-    met = min(met, *ends)
-    near = 1.0 - slack
-    heap = [(_proven(edge, 0.0, 1.0, *ends, near * met)[0], 0.0, 1.0, *ends)]
-    while met - heap[0][0] > max(slack * met, edge.rounding):
+    least = min(least, *ends)
+    share = 1.0 - precision
+    heap = [(_proven(edge, 0.0, 1.0, *ends, share * least)[0], 0.0, 1.0, *ends)]
+    while least - heap[0][0] > max(precision * least, edge.rounding):
         _, begin, end, first, last = heapq.heappop(heap)
         middle = 0.5 * (begin + end)
         clearance = edge.clearance(middle)
-        met = min(met, clearance)
+        least = min(least, clearance)
         for half in ((begin, middle, first, clearance), (middle, end, clearance, last)):
-            heapq.heappush(heap, (_proven(edge, *half, near * met)[0], *half))
-    return min(heap[0][0], met), met
+            heapq.heappush(heap, (_proven(edge, *half, share * least)[0], *half))
+    return min(heap[0][0], least), least
 
 
 def _proven(
     edge: Edge, begin: float, end: float, first: float, last: float, enough: float
 ) -> tuple[float, float]:
-    """A lower bound on the clearance over an interval, and the bound on travel that it rests on.
+    """A lower bound on the clearance over an interval, and the travel bound behind it.
 
-    The work stops at the first bound that is greater than `enough`: the least clearances against
-    the quick bound on travel, against the sharp one, and at last each part's own clearances.
+    Three bounds are computed in turn until one exceeds `enough`: the least clearances with the
+    coarse travel bound, the least clearances with the sharp one, and each part's own clearances.
     """
     travel = (end - begin) * edge.speed + edge.rounding
     bound = 0.5 * (first + last - travel)
@@ -136,5 +149,5 @@ def _proven(
     bound = 0.5 * (first + last - travel)
     if bound > enough:
         return bound, travel
-    spare = edge.parts(begin) + edge.parts(end) - each
-    return max(bound, 0.5 * float(spare.min(initial=np.inf))), travel
+    margins = edge.parts(begin) + edge.parts(end) - each
+    return max(bound, 0.5 * float(margins.min(initial=np.inf))), travel

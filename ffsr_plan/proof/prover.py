@@ -1,217 +1,191 @@
-"""`Prover`: clearances and proofs along edges of one motion, for any offsets of the base.
+"""Clearances and proofs along the edges of one motion, for any offsets of the base.
 
-An edge runs from one layer to the next; its ends are displaced from the nominal motion by offsets
-of one's choice. The lattice asks for its nodes, the refinement for points between them.
+An edge leads from one layer to the next. Its ends are displaced from the nominal motion by offsets:
+those of lattice nodes during a search, any others during refinement.
 """
 
 from __future__ import annotations
 
-import copy
 from itertools import pairwise
 
 import numpy as np
 
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
-from ffsr_plan.collision.shape_placements import Placements, shape_placements
-from ffsr_plan.core import rotations
+from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import GoalInCollision, NoPath, StartInCollision
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
+from ffsr_plan.proof.edges import (
+    NominalPlacements,
+    ObstacleEdge,
+    SelfCollisionEdge,
+    joint_configuration,
+)
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
 from ffsr_plan.scene.scene import Scene
 
-_SLACK = 0.05  # between the clearance proven along a path and the least one met, relative
-_ITERATED = 1e-7  # travel [m] for distances that Coal iterates to 1e-8 (`shapes.sharpen`)
-_RELATIVE = 4e-9  # and for each metre between the middles of what they are taken between
-_STILL = np.zeros(3)
+_BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
+_ITERATION_ERROR = 1e-7  # [m] for distances that Coal iterates to 1e-8
+_RELATIVE_ITERATION_ERROR = 4e-9  # for each metre between the centres of the two shapes
 
 
 class Prover:
-    """Asks Coal, and concludes.
+    """Certifies edges of one motion by distance queries.
 
     Attributes:
-        speeds: (m,) bound on the distance [m] that any point travels over an edge of each layer
-            besides the base's own.
-        rounding: travel [m] that is added to every bound.
+        speeds: (m,) bound on the travel [m] of any point over an edge of each layer, in addition
+            to the base's own.
+        rounding: length that is added to every travel bound [m].
     """
 
     def __init__(self, nominal: Motion, scene: Scene, tolerance: float) -> None:
+        """Prepare the proofs.
+
+        Args:
+            nominal: the motion from which offsets are counted.
+            scene: the obstacles.
+            tolerance: clearance below which an edge may be refused [m].
+        """
         self._motion, self._tolerance = nominal, tolerance
+        self._obstacles = ObstacleQuery(nominal.robot, scene)
         self._self = SelfQuery(nominal.robot)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
-        self._placed: dict[float, Placements] = {}
+        self._placements = NominalPlacements(nominal)
         self._corners = shape_placements(nominal.robot, nominal.configurations())
         self.speeds = self._travel.speeds
-        self._look_among(scene)
-
-    def among(self, scene: Scene) -> Prover:
-        """The same motion among other obstacles; what does not depend on them is shared."""
-        twin = copy.copy(self)
-        twin._look_among(scene)
-        return twin
-
-    def _look_among(self, scene: Scene) -> None:
-        robot = self._motion.robot
-        self._obstacles = ObstacleQuery(robot, scene)
-        self.rounding = ROUNDING + self._travel.slack
-        if not robot.primitives.exact.all():
-            self.rounding += _ITERATED + _RELATIVE * float(np.max(scene.radii, initial=0.0))
+        self.rounding = ROUNDING + self._travel.attitude_error
+        if not nominal.robot.primitives.exact.all():
+            largest = float(np.max(scene.radii, initial=0.0))
+            self.rounding += _ITERATION_ERROR + _RELATIVE_ITERATION_ERROR * largest
 
     @property
     def queries(self) -> int:
-        """Coal queries so far, each over all pairs of one configuration."""
+        """Number of Coal queries so far, each over all pairs of one configuration."""
         return self._obstacles.count + self._self.count
 
     def clearances(self, layers: IntArray, offsets: Array) -> Array:
-        """(k,) clearances [m] on layers (k,) at offsets (k, 3)."""
+        """Clearances at layers of the displaced motion.
+
+        Args:
+            layers: (k,) layers.
+            offsets: (k, 3) displacements of the base [m].
+
+        Returns:
+            (k,) distances to the nearest obstacle [m].
+        """
         return self._obstacles.distances_at(self._corners, layers, offsets)
 
     def base_step(self, layer: int, tail: Array, head: Array) -> Array:
-        """(..., 3) what the base origin covers from offsets `tail` to `head` (..., 3) [m]."""
+        """Displacement of the base origin over an edge.
+
+        Args:
+            layer: the edge.
+            tail: (..., 3) offsets at its start [m].
+            head: (..., 3) offsets at its end [m].
+
+        Returns:
+            (..., 3) displacements, world axes [m].
+        """
         along: Array = self._steps[layer]
         return along + head - tail
 
-    def certify(self, layer: int, tail: Array, head: Array, ends: tuple[float, float]) -> Verdict:
-        """The verdict on the edge from offset `tail` to `head` (3,), clearances `ends` [m]."""
-        return certify(_ObstacleEdge(self, layer, tail, head), ends, self._tolerance)
+    def obstacle_edge(self, layer: int, tail: Array, head: Array) -> ObstacleEdge:
+        """The edge from offset `tail` to `head`, (3,) each [m], for interval halving."""
+        return ObstacleEdge(
+            self._obstacles,
+            self._placements,
+            self._travel,
+            layer,
+            (tail, head),
+            self.base_step(layer, tail, head),
+            self.rounding,
+        )
 
-    def least_clearance(self, offsets: Array, clearances: Array) -> float:
-        """Proven lower bound on the clearance [m] all along a path whose edges are free.
+    def certify(self, layer: int, tail: Array, head: Array, ends: tuple[float, float]) -> Verdict:
+        """Prove that an edge is free of obstacles, or refuse it.
 
         Args:
-            offsets: (m + 1, 3) of the path's nodes.
-            clearances: (m + 1,) at the nodes [m].
+            layer: the edge.
+            tail: (3,) offset at its start [m].
+            head: (3,) offset at its end [m].
+            ends: clearances at both ends [m].
         """
-        bound = met = float(np.min(clearances))
+        return certify(self.obstacle_edge(layer, tail, head), ends, self._tolerance)
+
+    def least_clearance(self, offsets: Array, clearances: Array) -> float:
+        """Proven lower bound on the clearance all along a path whose edges are free.
+
+        Args:
+            offsets: (m + 1, 3) offsets of the path's nodes [m].
+            clearances: (m + 1,) clearances at the nodes [m].
+
+        Returns:
+            The bound [m].
+        """
+        bound = least = float(np.min(clearances))
         for layer, ends in enumerate(pairwise(map(float, clearances))):
-            edge = _ObstacleEdge(self, layer, offsets[layer], offsets[layer + 1])
-            here, met = clearance_bound(edge, ends, met, _SLACK)
-            bound = min(bound, here)
-        return max(bound, 0.0)  # no less: the edges have been proven free
+            edge = self.obstacle_edge(layer, offsets[layer], offsets[layer + 1])
+            edge_bound, least = clearance_bound(edge, ends, least, _BOUND_PRECISION)
+            bound = min(bound, edge_bound)
+        return max(bound, 0.0)  # not negative, because the edges have been proven free
 
     def nearest(self, layer: int, tail: Array, head: Array, time: float) -> Nearest:
-        """The nearest link and obstacle at a time on an edge."""
-        edge = _ObstacleEdge(self, layer, tail, head)
-        return self._obstacles.nearest_at(self.placed(time), layer, edge.offset(time))
+        """The nearest link and obstacle at a time on an edge.
+
+        Args:
+            layer: the edge.
+            tail: (3,) offset at its start [m].
+            head: (3,) offset at its end [m].
+            time: the time on it, in [0, 1].
+        """
+        offset = self.obstacle_edge(layer, tail, head).offset(time)
+        return self._obstacles.nearest_at(self._placements.at(time), layer, offset)
 
     def nearest_links(self, layer: int, time: float) -> Nearest:
-        """The nearest two links that must not touch, at a time on an edge."""
-        return self._self.nearest(self._posture(layer, time))
+        """The nearest two links that must not touch, at a time in [0, 1] on an edge."""
+        return self._self.nearest(joint_configuration(self._motion, layer, time))
 
     def check_ends(self) -> None:
-        """Raise `StartInCollision` or `GoalInCollision`, with link, obstacle and depth."""
+        """Check that start and goal touch nothing.
+
+        Raises:
+            StartInCollision: with link, obstacle and depth.
+            GoalInCollision: with link, obstacle and depth.
+        """
         for layer, error in ((0, StartInCollision), (self._motion.edges, GoalInCollision)):
-            found = (
-                self._obstacles.nearest_at(self._corners, layer, _STILL),
+            pairs = (
+                self._obstacles.nearest_at(self._corners, layer, np.zeros(3)),
                 self.nearest_links(layer, 0.0),
             )
-            for near in found:
-                if near.distance <= 0.0:
-                    raise error(near.link, near.other, -near.distance)
+            for nearest in pairs:
+                if nearest.distance <= 0.0:
+                    raise error(nearest.link, nearest.other, -nearest.distance)
 
     def check_self_collision(self) -> None:
-        """Prove that the arms keep clear of each other on the way; it does not matter where.
+        """Prove that no links touch each other on any edge, whatever the offsets.
 
         Raises:
             NoPath: with the first edge on which two links come too close.
         """
         for layer, verdict in enumerate(self.self_verdicts()):
             if not verdict.free:
-                near = self.nearest_links(layer, verdict.time)
-                raise NoPath(layer + 1, (near.link, str(near.other)), self._motion.edges)
+                nearest = self.nearest_links(layer, verdict.time)
+                raise NoPath(layer + 1, (nearest.link, str(nearest.other)), self._motion.edges)
 
     def self_verdicts(self) -> list[Verdict]:
-        """(m) whether the links keep clear of each other on each edge."""
+        """(m,) for each edge, whether links that must not touch are proven apart."""
+        motion = self._motion
         if self._self.empty:
-            return [Verdict(True, np.inf, 0.0, 0)] * self._motion.edges
-        edges = [_SelfEdge(self, layer) for layer in range(self._motion.edges)]
+            return [Verdict(True, np.inf, 0.0, 0)] * motion.edges
+        rounding = ROUNDING + _ITERATION_ERROR
+        edges = [
+            SelfCollisionEdge(self._self, motion, self._travel, layer, rounding)
+            for layer in range(motion.edges)
+        ]
         starts = [edge.clearance(0.0) for edge in edges]
         starts.append(edges[-1].clearance(1.0))
         return [
             certify(edge, ends, self._tolerance)
             for edge, ends in zip(edges, pairwise(starts), strict=True)
         ]
-
-    def placed(self, time: float) -> Placements:
-        """All shapes on every edge of the nominal motion at one time; kept, as halving asks again.
-
-        So do other edges for the times at the same level of halving: those come along.
-        """
-        if time not in self._placed:
-            times = _of_same_level(time)
-            edges = self._motion.edges
-            q = self._motion.at(np.tile(np.arange(edges), len(times)), np.repeat(times, edges))
-            frames = shape_placements(self._motion.robot, q).frames
-            parts = frames.reshape(len(times), edges, *frames.shape[1:])
-            self._placed |= zip(times.tolist(), map(Placements, parts), strict=True)
-        return self._placed[time]
-
-    def _posture(self, layer: int, time: float) -> Array:
-        """(nq,) joints at a time on an edge, the base anywhere."""
-        begin, end = self._motion.joint_values[[layer, layer + (time > 0.0)]]
-        joints = (1.0 - time) * begin + time * end
-        return self._motion.robot.assemble(_STILL, rotations.IDENTITY, joints)
-
-
-def _of_same_level(time: float) -> Array:
-    """The dyadic times that halving reaches in as many steps as `time`; beyond 1/16 it alone."""
-    for parts in (1, 2, 4, 8, 16):
-        if (time * parts).is_integer():
-            step = 1.0 / parts
-            return np.arange(step, 1.0, 2.0 * step) if parts > 1 else np.array([time])
-    return np.array([time])
-
-
-class _ObstacleEdge:
-    """An edge among the obstacles; its parts are the collision shapes."""
-
-    def __init__(self, prover: Prover, layer: int, tail: Array, head: Array) -> None:
-        self._prover, self._layer = prover, layer
-        self._tail, self._head = tail, head
-        self._step = prover.base_step(layer, tail, head)
-        self._parts: dict[float, Array] = {}
-        self.rounding = prover.rounding
-        self.speed = float(np.linalg.norm(self._step) + prover.speeds[layer])
-
-    def offset(self, time: float) -> Array:
-        return (1.0 - time) * self._tail + time * self._head
-
-    def clearance(self, time: float) -> float:
-        query, placed = self._prover._obstacles, self._prover.placed(time)
-        return float(
-            query.distances_at(placed, np.array([self._layer]), self.offset(time)[None])[0]
-        )
-
-    def parts(self, time: float) -> Array:
-        if time not in self._parts:
-            query, placed = self._prover._obstacles, self._prover.placed(time)
-            self._parts[time] = query.links_at(placed, self._layer, self.offset(time))
-        return self._parts[time]
-
-    def travel(self, begin: float, end: float) -> Array:
-        return self._prover._travel.bounds(self._layer, begin, end, self._step)
-
-
-class _SelfEdge:
-    """An edge of the joints alone; its parts are the pairs of links that must not touch."""
-
-    def __init__(self, prover: Prover, layer: int) -> None:
-        self._prover, self._layer = prover, layer
-        self._pairs = prover._self.pairs
-        self._parts: dict[float, Array] = {}
-        self.rounding = ROUNDING + _ITERATED
-        self.speed = 2.0 * float(prover._travel.speeds_in_base[layer])
-
-    def clearance(self, time: float) -> float:
-        return self._prover._self.distance(self._prover._posture(self._layer, time))
-
-    def parts(self, time: float) -> Array:
-        if time not in self._parts:
-            posture = self._prover._posture(self._layer, time)
-            self._parts[time] = self._prover._self.distances(posture)
-        return self._parts[time]
-
-    def travel(self, begin: float, end: float) -> Array:
-        each = self._prover._travel.bounds_in_base(self._layer, begin, end)
-        return np.asarray(each[self._pairs].sum(axis=1))

@@ -1,4 +1,4 @@
-"""`certify_edge`: the proof that one motion between two configurations is free, on its own."""
+"""`certify_edge`: the proof that one motion between two configurations is free."""
 
 from __future__ import annotations
 
@@ -18,52 +18,61 @@ from ffsr_plan.scene.scene import Scene
 
 
 class EdgeProof(NamedTuple):
-    """What `certify_edge` found out."""
+    """Result of `certify_edge`.
+
+    Attributes:
+        free: whether the whole motion is proven free, of obstacles and of other links.
+        least_clearance: least distance computed [m], negative in penetration: to an obstacle, or
+            between two links if these are the reason for a refusal. Infinite in an empty scene.
+        link: name of the link of that distance; empty in an empty scene.
+        obstacle: the object nearest to it: index of a sphere, name of another link, or None in an
+            empty scene.
+        time: the time in [0, 1] of that distance.
+        proven_clearance: lower bound on the distance to any obstacle along the whole motion [m];
+            0 if the motion is not free.
+        queries: number of configurations at which distances were computed, over all pairs.
+        arrival: (nq,) configuration at the end, with the attitude that is reached.
+    """
 
     free: bool
-    """Whether the whole motion is proven free, of obstacles and of other links."""
     least_clearance: float
-    """Least distance met [m], negative in penetration: to an obstacle, or, where two links stand in
-    the way, between them. Infinite in an empty scene."""
     link: str
-    """The link that is nearest there; empty in an empty scene."""
     obstacle: int | str | None
-    """What it is nearest to: index of a sphere, or name of another link."""
     time: float
-    """Where on the motion that is, in [0, 1]."""
     proven_clearance: float
-    """Lower bound on the distance to any obstacle all along [m]; 0 where the motion is not free."""
     queries: int
-    """Configurations at which Coal was asked, over all pairs."""
     arrival: Array
-    """(nq,) configuration at the end, its attitude the one really reached."""
 
 
 def certify_edge(
     robot: SpaceRobot,
     scene: Scene,
-    begin: ArrayLike,
-    end: ArrayLike,
+    start: ArrayLike,
+    goal: ArrayLike,
     mode: Mode | str = Mode.FREE_FLYING,
     tolerance: float = 1e-4,
 ) -> EdgeProof:
-    """Prove that the motion from `begin` to `end` touches nothing, base reaction included.
+    """Prove that the motion from `start` to `goal` touches nothing, base reaction included.
 
-    Base origin and joints move linearly, continuous joints the shorter way round. The proof is by
-    interval halving with a bound on how far any point of the robot can travel (docs/proof.md), not
-    by sampling. A motion that keeps more than `tolerance` all along is never refused; touching
+    Base origin and joints move linearly, continuous joints the shorter way round. The proof uses
+    interval halving with a bound on the travel of every point of the robot (docs/proof.md), not
+    sampling. A motion whose clearance exceeds `tolerance` everywhere is never refused; touching
     counts as a collision.
 
     Args:
         robot: the robot.
         scene: the obstacles.
-        begin: (nq,) configuration to start from.
-        end: (nq,) configuration to go to. In the mode `free-flying` its attitude is not looked at,
-            in the mode `free-floating` nor is its base position: they follow from the arms' motion.
-        mode: `free-flying` (thrusters move the base origin from `begin` to `end`), `attitude-held`
-            (they do, and wheels turn the base steadily to the attitude of `end`) or `free-floating`
-            (neither: the centre of mass stays put).
-        tolerance: clearance [m] below which the motion may be refused, at least 1e-7.
+        start: (nq,) configuration at the start.
+        goal: (nq,) configuration at the goal. Its attitude is ignored in the modes `free-flying`
+            and `free-floating`, its base position in the mode `free-floating`: they follow from the
+            arms' motion.
+        mode: `free-flying` (thrusters move the base origin from `start` to `goal`),
+            `attitude-held` (also, wheels rotate the base at a constant angular velocity to the
+            attitude of `goal`) or `free-floating` (neither: the centre of mass is at rest).
+        tolerance: clearance below which the motion may be refused, at least 1e-7 [m].
+
+    Returns:
+        The verdict, the least distance and where it is, and the arrival.
 
     Raises:
         InvalidInput: naming the argument, its value and what is allowed.
@@ -72,23 +81,26 @@ def certify_edge(
         raise InvalidInput("robot", robot, "a SpaceRobot")
     if not isinstance(scene, Scene):
         raise InvalidInput("scene", scene, "a Scene")
-    first, last = robot.check_configuration("begin", begin), robot.check_configuration("end", end)
+    first, last = robot.check_configuration("start", start), robot.check_configuration("goal", goal)
     positions = np.stack([first[:3], last[:3]])
     motion = Motion(robot, Mode.parse("mode", mode), first, last, positions)
     prover = Prover(motion, scene, number("tolerance", tolerance, at_least=1e-7))
-    still = np.zeros(3)
+    offset = np.zeros(3)
     ends = prover.clearances(np.array([0, 1]), np.zeros((2, 3)))
-    (apart,) = prover.self_verdicts()
-    verdict = prover.certify(0, still, still, (float(ends[0]), float(ends[1])))
-    if verdict.free and not apart.free:
-        verdict, near = apart, prover.nearest_links(0, apart.time)
+    (links_verdict,) = prover.self_verdicts()
+    verdict = prover.certify(0, offset, offset, (float(ends[0]), float(ends[1])))
+    if verdict.free and not links_verdict.free:
+        verdict, nearest = links_verdict, prover.nearest_links(0, links_verdict.time)
     else:
-        near = prover.nearest(0, still, still, verdict.time)
-    free = verdict.free
-    proven = prover.least_clearance(np.zeros((2, 3)), ends) if free else 0.0
-    arrival = frozen(motion.configurations()[-1])
-    other = near.other if near.link else None
+        nearest = prover.nearest(0, offset, offset, verdict.time)
+    proven = prover.least_clearance(np.zeros((2, 3)), ends) if verdict.free else 0.0
     return EdgeProof(
-        free, verdict.least_clearance, near.link, other, verdict.time, proven,
-        prover.queries, arrival,
-    )  # fmt: skip
+        free=verdict.free,
+        least_clearance=verdict.least_clearance,
+        link=nearest.link,
+        obstacle=nearest.other if nearest.link else None,
+        time=verdict.time,
+        proven_clearance=proven,
+        queries=prover.queries,
+        arrival=frozen(motion.configurations()[-1]),
+    )

@@ -30,7 +30,7 @@ class Cycle(NamedTuple):
         counts: (m + 1, n) ants on each node in this cycle (b_j of Eq. 10).
         pheromone: (m, n, n) tau of each edge, with posture axes of each change of the base offset,
             or (m, 1, n) where pheromone lies on the nodes that edges lead to; a view that the
-            colony goes on changing.
+            colony changes in later cycles.
     """
 
     number: int

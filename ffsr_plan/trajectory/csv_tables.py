@@ -1,6 +1,7 @@
-"""Tables for other tools: comma-separated values, one header line, a unit in every column's name.
+"""Tables of paths and trajectories as comma-separated values.
 
-Numbers are written in full: reading them gives the same floating-point numbers back.
+There is one header line with a unit in every column's name. Numbers are written with all digits:
+reading them returns the same floating-point numbers.
 """
 
 from __future__ import annotations
@@ -20,11 +21,19 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.robot import SpaceRobot
 
 Table = dict[str, Array]
-"""Columns (N,) by header."""
+"""Columns (N,), by header."""
 
 
 def path_table(motion: Motion, parameters: Array) -> Table:
-    """Base pose and joints at path parameters (N,) in [0, 1]."""
+    """Base pose and joints along a path.
+
+    Args:
+        motion: the motion.
+        parameters: (N,) path parameters in [0, 1].
+
+    Returns:
+        The columns.
+    """
     scaled = parameters * motion.edges
     edge = np.minimum(scaled.astype(np.int64), motion.edges - 1)
     q, joints = motion.at(edge, scaled - edge), motion.joints_at(edge, scaled - edge)
@@ -32,7 +41,18 @@ def path_table(motion: Motion, parameters: Array) -> Table:
 
 
 def trajectory_table(robot: SpaceRobot, times: Array, states: States) -> Table:
-    """Everything that `States` knows, at times (N,) [s]."""
+    """All states of a flight.
+
+    Linear base velocity and acceleration are in world axes, unlike in `States`.
+
+    Args:
+        robot: the robot, for the names of the joints.
+        times: (N,) times [s].
+        states: the states at these times.
+
+    Returns:
+        The columns.
+    """
     v, a = states.velocities, states.accelerations
     table = {"t [s]": times, "s [1]": states.parameters}
     table |= _pose(robot, states.configurations, states.joints)
@@ -50,7 +70,11 @@ def trajectory_table(robot: SpaceRobot, times: Array, states: States) -> Table:
 
 
 def write_csv(path: Path, table: Table) -> None:
-    """Write a table, in place of a file that is there.
+    """Write a table; an existing file is replaced.
+
+    Args:
+        path: of the file.
+        table: the columns.
 
     Raises:
         InvalidInput: a file that cannot be written.
@@ -75,7 +99,7 @@ def _vector(header: str, values: Array) -> Table:
 
 
 def _per_joint(robot: SpaceRobot, quantity: str, units: tuple[str, str], values: Array) -> Table:
-    """`units` of a hinge and of a slide, whose torque is a force."""
+    """One column for each joint; `units` are those of a revolute and of a prismatic joint."""
 
     def columns() -> Iterator[tuple[str, Array]]:
         for k, name in enumerate(robot.joint_names):

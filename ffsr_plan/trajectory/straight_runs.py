@@ -1,10 +1,10 @@
-"""Where a motion runs straight: its edges in chains along which no direction changes.
+"""Straight runs of a motion: chains of edges along which no direction changes.
 
-A time law decides only when the robot is where. Along a straight run it moves everything in fixed
-proportion, so one number x says how far along it is, and every limit is a limit on x. Between two
-runs a velocity would have to change at once. The joints cannot do that: where their direction
-changes, or their pace against a base that wheels turn, the robot rests. Where the path of the base
-alone has a corner, thrusters can, by a pulse.
+A time law changes only when the robot is where. Along a straight run it moves all coordinates in
+fixed proportion, so one number x describes the position, and every limit is a limit on x. Between
+two runs a velocity would have to change instantly. Joints cannot do that: if their direction
+changes, or their pace relative to a base that wheels rotate, the robot has to rest. If only the
+path of the base has a corner, thrusters can pass it with a pulse.
 """
 
 from __future__ import annotations
@@ -16,41 +16,48 @@ import numpy as np
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.dynamics.motion import Motion
 
-_STILL = 1e-12  # what moves less over an edge [m or rad] does not move
-_PARALLEL = 1e-7  # of the speed: a smaller change of velocity is rounding, not a corner
+_SMALLEST_STEP = 1e-12  # [m or rad] smaller steps over an edge count as zero
+_PARALLEL = 1e-7  # relative change of direction below which there is no corner
 
 
 class StraightRuns(NamedTuple):
-    """r runs of a motion of m edges; edges along which nothing moves belong to none."""
+    """The r straight runs of a motion of m edges; edges without motion belong to none.
+
+    Along a run x grows by one if the joint values and the base's rotation change by a vector of
+    length one or, if they do not change, if the base moves by one metre.
+
+    Attributes:
+        corners: (m + 1,) x at the nodes.
+        first: (r,) first edge of each run.
+        last: (r,) last edge of each run.
+        base: (r, 3) displacement of the base origin by thrusters, world axes [m per unit of x].
+        turn: (r, 3) rotation of the base by wheels, base axes [rad per unit of x].
+        joints: (r, nd) joint displacements [rad or m per unit of x].
+    """
 
     corners: Array
-    """(m + 1,) x at the nodes. Its unit: joints and base turn by a vector of length one, or, where
-    they do not move, the base goes one metre."""
     first: IntArray
-    """(r,) first edge of each run."""
     last: IntArray
-    """(r,) last edge of each run."""
     base: Array
-    """(r, 3) displacement of the base origin by thrusters, world axes [m per unit of x]."""
     turn: Array
-    """(r, 3) turn of the base by wheels, base axes [rad per unit of x]."""
     joints: Array
-    """(r, nd) [rad or m per unit of x]."""
 
     @property
     def lengths(self) -> Array:
-        """(r,) of x."""
-        return np.asarray(self.corners[self.last + 1] - self.corners[self.first])
+        """(r,) length of each run in x."""
+        return self.corners[self.last + 1] - self.corners[self.first]
 
     def rates(self) -> Array:
-        """(r, 2 + nd) per unit of x: of the base origin [m], its turn [rad], each joint."""
+        """(r, 2 + nd) rates per unit of x: base origin [m], base rotation [rad], each joint."""
         norms = [np.linalg.norm(part, axis=1) for part in (self.base, self.turn)]
         return np.column_stack([*norms, np.abs(self.joints)])
 
     def jumps(self) -> Array:
-        """(r - 1, 3) change of the base's velocity from run to run, per unit of x' [m].
+        """Change of the base's velocity between consecutive runs.
 
-        Infinite where something else would have to change its velocity too.
+        Returns:
+            (r - 1, 3) per unit of x' [m]; infinite if the velocity of joints or of the base's
+            rotation would change too.
         """
         change = np.diff(self.base, axis=0)
         others = np.diff(np.hstack([self.turn, self.joints]), axis=0)
@@ -58,7 +65,15 @@ class StraightRuns(NamedTuple):
         return change
 
     def locate(self, run: IntArray, x: Array) -> tuple[IntArray, Array, Array]:
-        """Edge (N,), time on it in [0, 1] (N,) and x per unit of that time, at x (N,) of runs."""
+        """Edges and times on them at positions along runs.
+
+        Args:
+            run: (N,) runs.
+            x: (N,) positions.
+
+        Returns:
+            Edge (N,), time on it in [0, 1] (N,), and x per unit of that time (N,).
+        """
         edge = np.searchsorted(self.corners, x, side="right") - 1
         edge = np.clip(edge, self.first[run], self.last[run])
         scale = self.corners[edge + 1] - self.corners[edge]
@@ -66,14 +81,19 @@ class StraightRuns(NamedTuple):
 
 
 def straight_runs(motion: Motion) -> StraightRuns:
-    """The straight runs of a motion, as long as they can be."""
+    """The longest straight runs of a motion.
+
+    Args:
+        motion: the motion.
+
+    Returns:
+        The runs; none if nothing moves.
+    """
     turn = np.zeros(3) if motion.mode.attitude_reacts else motion.turn
-    steps = np.hstack([
-        motion.base_steps(),
-        np.broadcast_to(turn, (motion.edges, 3)),
-        np.diff(motion.joint_values, axis=0),
-    ])  # fmt: skip
-    steps[np.abs(steps) <= _STILL] = 0.0
+    rotations = np.broadcast_to(turn, (motion.edges, 3))
+    joint_steps = np.diff(motion.joint_values, axis=0)
+    steps = np.hstack([motion.base_steps(), rotations, joint_steps])
+    steps[np.abs(steps) <= _SMALLEST_STEP] = 0.0
     scale = np.linalg.norm(steps[:, 3:], axis=1)
     scale = np.where(scale > 0.0, scale, np.linalg.norm(steps[:, :3], axis=1))
     moving = np.flatnonzero(scale > 0.0)
@@ -86,6 +106,10 @@ def straight_runs(motion: Motion) -> StraightRuns:
     ends = [*(k - 1 for k in starts[1:]), len(moving) - 1] if starts else []
     along = directions[starts]
     return StraightRuns(
-        np.concatenate([[0.0], np.cumsum(scale)]), moving[starts], moving[ends],
-        along[:, :3], along[:, 3:6], along[:, 6:],
-    )  # fmt: skip
+        corners=np.concatenate([[0.0], np.cumsum(scale)]),
+        first=moving[starts],
+        last=moving[ends],
+        base=along[:, :3],
+        turn=along[:, 3:6],
+        joints=along[:, 6:],
+    )

@@ -1,11 +1,12 @@
-"""`TimeLaw`: when a motion is where, as fast as limits on speed, acceleration and jerk allow.
+"""Fastest time law along straight runs within limits on speed, acceleration and jerk.
 
-Along a straight run x is one number, and the fastest way along it has a closed form: full
-acceleration, full speed, full braking. With a limit on jerk, Ruckig finds it (L. Berscheid and
-T. Kroeger, "Jerk-limited Real-time Trajectory Generation with Arbitrary Target States", 2021).
-Where runs may follow each other without a rest, the speeds in between are the highest from which
-the robot can still brake and which it can reach: one pass forwards, one backwards. In the plane of
-x and x'^2, where limits on acceleration are slopes, no curve runs above the one so found.
+Along a straight run the position is one number x, and the fastest profile is a trapezoid or an
+S-curve (`profiles`). If runs may follow each other without a rest, the speeds between them are the
+highest from which the robot can still brake and which it can reach: one pass forwards, one
+backwards. In the plane of x and x'^2, in which limits on acceleration are slopes, no admissible
+curve lies above the result. The runs of a motion, rests between them and pulses at corners are
+specific to this robot, so no library is used here; a law without rests (by TOPP-RA, for example)
+would need a smoothed path.
 """
 
 from __future__ import annotations
@@ -15,38 +16,45 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.errors import FfsrPlanError
+from ffsr_plan.trajectory.profiles import s_curve, trapezoid
 from ffsr_plan.trajectory.straight_runs import StraightRuns
 
-_NO_SPEED, _NO_ACCELERATION, _NO_JERK = 1e3, 1e6, 1e9
-"""What counts as no limit in the units of `_s_curve`, where about 1 is needed: costs 1e-4 of the
-duration at most, and keeps Ruckig within numbers that it can tell apart."""
-
-_ROUNDING = 1e-12  # of a run's duration: no phase is as short
+_SHORTEST_PHASE = 1e-12  # share of a run's duration below which a phase is a rounding error
 
 
 class TimeLaw(NamedTuple):
-    """x(t), a cubic on each of K pieces."""
+    """The position x(t), a cubic polynomial on each of K pieces.
+
+    Attributes:
+        times: (K + 1,) times between the pieces [s].
+        begin: (K, 4) x, x', x'', x''' at the start of each piece.
+        run: (K,) the straight run of each piece.
+    """
 
     times: Array
-    """(K + 1,) where pieces begin and end [s]."""
     begin: Array
-    """(K, 4) x, x', x'', x''' at the beginning of each piece."""
     run: IntArray
-    """(K,) the straight run that each piece is on."""
 
     @property
     def duration(self) -> float:
-        """[s]."""
+        """Duration of the whole law [s]."""
         return float(self.times[-1])
 
     def piece(self, times: Array) -> IntArray:
-        """(N,) piece at times (N,); where two meet, the later one."""
-        found = np.searchsorted(self.times, times, side="right") - 1
-        return np.clip(found, 0, len(self.run) - 1)
+        """(N,) pieces at times (N,) [s]; between two pieces, the later one."""
+        pieces = np.searchsorted(self.times, times, side="right") - 1
+        return np.clip(pieces, 0, len(self.run) - 1)
 
     def on(self, piece: IntArray, times: Array) -> tuple[Array, Array, Array]:
-        """x, x' and x'' (N,) at times (N,) on pieces (N,)."""
+        """Position, speed and acceleration on given pieces.
+
+        Args:
+            piece: (N,) pieces.
+            times: (N,) times on them [s].
+
+        Returns:
+            x, x' and x'', (N,) each.
+        """
         t = times - self.times[piece]
         x, speed, acceleration, jerk = self.begin[piece].T
         return (
@@ -56,7 +64,11 @@ class TimeLaw(NamedTuple):
         )
 
     def slowed(self, factors: Array) -> TimeLaw:
-        """The same way, every piece taking longer by factors (K,), equal between two rests."""
+        """The law with each piece's duration multiplied by a factor.
+
+        Args:
+            factors: (K,) factors, equal for all pieces between two rests.
+        """
         times = np.concatenate([[0.0], np.cumsum(np.diff(self.times) * factors)])
         return TimeLaw(times, self.begin / factors[:, None] ** np.arange(4), self.run)
 
@@ -64,25 +76,28 @@ class TimeLaw(NamedTuple):
 def time_law(
     runs: StraightRuns, limits: tuple[Array, Array, Array], velocity_jump: float
 ) -> tuple[TimeLaw, Array]:
-    """The fastest law, and the speeds x' (r + 1,) at the beginning of runs and at the end.
+    """The fastest time law along straight runs.
 
     Args:
-        runs: r of them, at least one.
-        limits: (r,) most x', x'' and x''' of each run.
-        velocity_jump: most that the base's velocity may change at once [m/s].
+        runs: r runs, at least one.
+        limits: (r,) each: limits on x', x'' and x''' of each run.
+        velocity_jump: largest change of the base's velocity at a corner [m/s].
+
+    Returns:
+        The law, and the speeds x' (r + 1,) at the start of each run and at the end.
     """
     speeds = _speeds_between(runs, limits, velocity_jump)
     durations, begin, owner = [], [], []
     for k, length in enumerate(runs.lengths):
         top, push, jerk = (float(each[k]) for each in limits)
         if np.isinf(jerk):
-            phases = _trapezoid(length, speeds[k], speeds[k + 1], top, push)
+            phases = trapezoid(length, speeds[k], speeds[k + 1], top, push)
         else:
-            phases = _s_curve(length, top, push, jerk)
+            phases = s_curve(length, top, push, jerk)
         x, speed = runs.corners[runs.first[k]], speeds[k]
-        rounding = _ROUNDING * sum(t for t, _, _ in phases)
+        shortest = _SHORTEST_PHASE * sum(phase.duration for phase in phases)
         for t, acceleration, change in phases:
-            if t > rounding:
+            if t > shortest:
                 durations.append(t)
                 begin.append([x, speed, acceleration, change])
                 owner.append(k)
@@ -95,7 +110,7 @@ def time_law(
 def _speeds_between(
     runs: StraightRuns, limits: tuple[Array, Array, Array], velocity_jump: float
 ) -> Array:
-    """(r + 1,) highest x' at the ends of runs; zero is a rest."""
+    """(r + 1,) highest x' at the start of each run and at the end; zero is a rest."""
     top, push, _ = limits
     speeds = np.zeros(len(top) + 1)
     if len(top) > 1:
@@ -107,43 +122,3 @@ def _speeds_between(
     for k in reversed(range(len(top))):
         speeds[k] = min(speeds[k], np.sqrt(speeds[k + 1] ** 2 + gain[k]))
     return speeds
-
-
-Phase = tuple[float, float, float]
-"""Duration [s], and x'' and x''' at its beginning."""
-
-
-def _trapezoid(length: float, begin: float, end: float, top: float, push: float) -> list[Phase]:
-    """Speed up from x' = `begin`, keep to `top` if it is reached, slow down to `end`."""
-    peak = min(top, np.sqrt(push * length + (begin**2 + end**2) / 2.0))
-    up, down = max(peak - begin, 0.0) / push, max(peak - end, 0.0) / push
-    cruise = length - up * (peak + begin) / 2.0 - down * (peak + end) / 2.0
-    return [(up, push, 0.0), (max(cruise, 0.0) / peak, 0.0, 0.0), (down, -push, 0.0)]
-
-
-def _s_curve(length: float, top: float, push: float, jerk: float) -> list[Phase]:
-    """From rest to rest in phases of constant jerk.
-
-    Ruckig is asked in units of the length and of a time that every limit by itself demands.
-    """
-    from ruckig import InputParameter, Result, Ruckig, Trajectory
-
-    second = max(length / top, np.sqrt(length / push), np.cbrt(length / jerk))
-    query, answer = InputParameter(1), Trajectory(1)
-    query.current_position, query.target_position = [0.0], [1.0]
-    query.max_velocity = [min(top * second / length, _NO_SPEED)]
-    query.max_acceleration = [min(push * second**2 / length, _NO_ACCELERATION)]
-    query.max_jerk = [min(jerk * second**3 / length, _NO_JERK)]
-    result = Ruckig(1).calculate(query, answer)
-    if result not in (Result.Working, Result.Finished):
-        raise FfsrPlanError(f"no time law for length {length:g} ({result})")
-    profile = answer.profiles[0][0]
-    phases: list[Phase] = []
-    for t, a, j in zip(profile.t, profile.a, profile.j, strict=False):  # `a` has the end's too
-        turn = -a / j if a * (a + j * t) < 0.0 else 0.0  # so that no piece pushes, then brakes
-        parts = [(turn, a), (t - turn, 0.0)] if turn > 0.0 else [(t, a)]
-        phases += [
-            (float(part) * second, float(first) * length / second**2, j * length / second**3)
-            for part, first in parts
-        ]
-    return phases

@@ -1,12 +1,12 @@
-"""A second reading of a robot's URDF, for verification alone.
+"""Independent reader of a robot's URDF, for verification.
 
-It shares nothing with the planner: yourdfpy parses, and the kinematics here and the distances in
-`solids` and `separation` are plain numpy over many configurations at once. Slow, simple,
-independent. Collision shapes are read here, because yourdfpy refuses capsules.
+It shares no code with the planner: yourdfpy parses, and the kinematics here and the distances in
+`solids` and `separation` are plain numpy over many configurations at once. Collision shapes are
+read here, because yourdfpy rejects capsules.
 
-Where another solid stands for a cylinder or mesh, that solid is measured: the plan's clearances are
-defined by it. `Bodies.uncovered` tells whether it holds the original, so that what is free for the
-one is free for the other.
+If a cylinder or mesh is replaced by another solid, distances are to that solid, as in the plan.
+`Bodies.uncovered` checks that it contains the original, so that clearances of the replacement are
+lower bounds for the original.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.solids import Shape, ball, box, capsule, covers_cylinder, covers_points
 
 if TYPE_CHECKING:
@@ -29,13 +30,23 @@ if TYPE_CHECKING:
 class Bodies:
     """Links, joints, masses and shapes of a URDF.
 
-    Args:
-        urdf: the text.
-        srdf: the SRDF text, empty for none.
-        replacements: the solids that stand for cylinders and meshes.
+    Attributes:
+        root: name of the root link.
+        inertials: mass, centre of mass and inertia of each link that has a mass, by name.
+        shapes: the collision shapes, in the order of the URDF.
     """
 
     def __init__(self, urdf: str, srdf: str = "", replacements: Sequence[Replacement] = ()) -> None:
+        """Read a robot.
+
+        Args:
+            urdf: text of the URDF.
+            srdf: text of the SRDF, empty for none.
+            replacements: the solids that replace cylinders and meshes.
+
+        Raises:
+            InvalidInput: a cylinder or mesh has no replacement.
+        """
         import yourdfpy
 
         root = ElementTree.fromstring(urdf)
@@ -60,50 +71,53 @@ class Bodies:
         heads = {joint.child for joint in robot.joints}
         self.root = next(link.name for link in robot.links if link.name not in heads)
         self.inertials = {link.name: link.inertial for link in robot.links if link.inertial}
-        instead = {(r.link, r.number): r for r in replacements}
+        replaced = {(r.link, r.number): r for r in replacements}
         self.shapes = [
-            _shape(link, collision, instead.get((link, number)))
+            _shape(link, collision, replaced.get((link, number)))
             for link, number, collision in self._collisions
         ]
 
     def uncovered(self, meshes: Mapping[str, Array]) -> list[str]:
-        """Links with a cylinder or mesh that sticks out of the solid that stands for it.
+        """Links with a cylinder or mesh that is not contained in its replacement.
 
         Args:
             meshes: (n, 3) corners of the meshes' hulls by address, before the URDF's scale.
+
+        Returns:
+            The names of these links.
         """
-        found = []
+        links = []
         for shape, (link, _, collision) in zip(self.shapes, self._collisions, strict=True):
             element = collision.find("geometry")[0]  # type: ignore[index]
             if element.tag == "cylinder":
-                held = covers_cylinder(shape, *_floats(element, "radius", "length"))
+                covered = covers_cylinder(shape, *_floats(element, "radius", "length"))
             elif element.tag == "mesh":
                 scale = np.array(element.get("scale", "1 1 1").split(), dtype=np.float64)
-                held = covers_points(shape, meshes[str(element.get("filename"))] * scale)
+                covered = covers_points(shape, meshes[str(element.get("filename"))] * scale)
             else:
                 continue
-            if not held:
-                found.append(link)
-        return found
+            if not covered:
+                links.append(link)
+        return links
 
     def pairs(self) -> list[tuple[Shape, Shape]]:
-        """Shapes that must not touch.
+        """Pairs of shapes that must not touch.
 
-        Not of one rigid body, nor of links between which lie just one moving joint and links
-        without a shape, nor of links that the SRDF exempts.
+        Shapes of one rigid body are no pair, nor are those of two links with only one moving joint
+        and no link with a shape between them, nor those that the SRDF exempts.
         """
-        beside: dict[str, list[tuple[str, int]]] = {name: [] for name in self._children}
+        neighbours: dict[str, list[tuple[str, int]]] = {name: [] for name in self._children}
         for parent, joints in self._children.items():
             for joint in joints:
                 moves = int(joint.type != "fixed")
-                beside[parent].append((joint.child, moves))
-                beside[joint.child].append((parent, moves))
+                neighbours[parent].append((joint.child, moves))
+                neighbours[joint.child].append((parent, moves))
         shaped = {shape.link for shape in self.shapes}
         return [
             (a, b)
             for a, b in combinations(self.shapes, 2)
             if frozenset((a.link, b.link)) not in self._exempt
-            and b.link not in _may_touch(a.link, beside, shaped)
+            and b.link not in _may_touch(a.link, neighbours, shaped)
         ]
 
     def link_poses(self, base: Array, joints: dict[str, Array]) -> dict[str, Array]:
@@ -111,7 +125,10 @@ class Bodies:
 
         Args:
             base: (N, 4, 4) pose of the root link.
-            joints: (N,) values of each moving joint by name.
+            joints: (N,) values of each moving joint by name [rad or m].
+
+        Returns:
+            (N, 4, 4) for each link by name.
         """
         poses = {self.root: base}
         waiting = [self.root]
@@ -128,7 +145,15 @@ class Bodies:
 
 
 def pose(position: Array, quat_xyzw: Array) -> Array:
-    """(N, 4, 4) from (N, 3) and (N, 4): columns are the rotated unit vectors."""
+    """Homogeneous transforms of positions and attitudes.
+
+    Args:
+        position: (N, 3) [m].
+        quat_xyzw: (N, 4) unit quaternions (xyzw).
+
+    Returns:
+        (N, 4, 4) transforms; the columns of their rotations are the rotated unit vectors.
+    """
     vector, scalar = quat_xyzw[:, :3], quat_xyzw[:, 3]
     result = np.zeros((len(position), 4, 4))
     for k, unit in enumerate(np.eye(3)):
@@ -140,6 +165,7 @@ def pose(position: Array, quat_xyzw: Array) -> Array:
 
 
 def _displacement(joint: Any, value: Array) -> Array:  # noqa: ANN401 - yourdfpy has no types
+    """(N, 4, 4) displacement by a joint's values (N,) [rad or m]."""
     result = np.broadcast_to(np.eye(4), (len(value), 4, 4)).copy()
     axis = np.array([1.0, 0.0, 0.0]) if joint.axis is None else np.asarray(joint.axis, float)
     axis = axis / np.linalg.norm(axis)
@@ -153,7 +179,7 @@ def _displacement(joint: Any, value: Array) -> Array:  # noqa: ANN401 - yourdfpy
     return result
 
 
-def _shape(link: str, collision: ElementTree.Element, instead: Replacement | None) -> Shape:
+def _shape(link: str, collision: ElementTree.Element, replacement: Replacement | None) -> Shape:
     placement = _placement(collision.find("origin"))
     element = collision.find("geometry")[0]  # type: ignore[index]
     if element.tag == "box":
@@ -163,10 +189,10 @@ def _shape(link: str, collision: ElementTree.Element, instead: Replacement | Non
         return ball(link, placement, *_floats(element, "radius"))
     if element.tag == "capsule":
         return capsule(link, placement, *_floats(element, "radius", "length"))
-    if instead is None:
-        raise ValueError(f"nothing on record stands for the {element.tag} of link '{link}'")
-    points = (np.array(instead.points) - placement[:3, 3]) @ placement[:3, :3]
-    return Shape(link, placement, points, instead.radius)
+    if replacement is None:
+        raise InvalidInput(f"{element.tag} of link '{link}'", None, "a solid that replaces it")
+    points = (np.array(replacement.points) - placement[:3, 3]) @ placement[:3, :3]
+    return Shape(link, placement, points, replacement.radius)
 
 
 def _floats(element: ElementTree.Element, *keys: str) -> list[float]:
@@ -174,35 +200,38 @@ def _floats(element: ElementTree.Element, *keys: str) -> list[float]:
 
 
 def _placement(origin: ElementTree.Element | None) -> Array:
-    """(4, 4) of an `<origin>`: turns about the fixed x, y and z axes, then the shift."""
+    """(4, 4) of an `<origin>`: rotations about the fixed x, y and z axes, then the translation."""
     result = np.eye(4)
     if origin is None:
         return result
     for axis, angle in enumerate(origin.get("rpy", "0 0 0").split()):
         cosine, sine = np.cos(float(angle)), np.sin(float(angle))
-        turn, (i, j) = np.eye(4), ((1, 2), (2, 0), (0, 1))[axis]
-        turn[i, i] = turn[j, j] = cosine
-        turn[j, i], turn[i, j] = sine, -sine
-        result = turn @ result
+        rotation, (i, j) = np.eye(4), ((1, 2), (2, 0), (0, 1))[axis]
+        rotation[i, i] = rotation[j, j] = cosine
+        rotation[j, i], rotation[i, j] = sine, -sine
+        result = rotation @ result
     result[:3, 3] = np.array(origin.get("xyz", "0 0 0").split(), dtype=np.float64)
     return result
 
 
-def _may_touch(link: str, beside: dict[str, list[tuple[str, int]]], shaped: set[str]) -> set[str]:
-    """Links that may touch `link`, itself among them.
+def _may_touch(
+    link: str, neighbours: dict[str, list[tuple[str, int]]], shaped: set[str]
+) -> set[str]:
+    """Links that may touch `link`, itself included.
 
-    A walk over joints, of which at most one moves, and none on a way past another shape.
+    They are connected to it by joints of which at most one moves, without passing a link with a
+    shape unless all joints are fixed.
     """
-    found: set[str] = set()
+    links: set[str] = set()
     waiting, seen = [(link, 0, False)], set()
     while waiting:
-        here, moved, passed = state = waiting.pop()
+        current, moved, passed = state = waiting.pop()
         if state in seen:
             continue
         seen.add(state)
-        found.add(here)
-        passed |= here in shaped and here != link
-        for other, moves in beside[here]:
+        links.add(current)
+        passed |= current in shaped and current != link
+        for other, moves in neighbours[current]:
             if moved + moves <= (0 if passed else 1):
                 waiting.append((other, moved + moves, passed))
-    return found
+    return links

@@ -54,7 +54,7 @@ def test_angular_momentum_vanishes_whatever_the_thrusters_do(seed):
 
 
 def angular_momentum(robot, q, v):
-    """About the centre of mass, body by body, with the sum of the terms' sizes."""
+    """Angular momentum about the centre of mass by bodies, and the sum of its terms' sizes."""
     model, data = robot.model, robot.model.createData()
     pin.forwardKinematics(model, data, q, v)
     com = pin.centerOfMass(model, data, q, v)
@@ -74,13 +74,13 @@ def angular_momentum(robot, q, v):
 
 @given(seeds)
 @settings(max_examples=30)
-def test_equation_1_matches_finite_differences_of_the_integrated_angles(seed):
+def test_equation_1_matches_differences_of_integrated_angles(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     q = random_configuration(robot, rng)
     rate = rng.uniform(-1, 1, robot.nd)
     h = 1e-4
     theta = robot.joint_values(q)
-    ways = [Reaction(robot, np.array([theta, theta + s * h * rate])) for s in (1, -1)]
+    ways = [Reaction.along(robot, np.array([theta, theta + s * h * rate])) for s in (1, -1)]
     ahead, behind = (
         rotations.to_angles(rotations.multiply(q[3:7], way.increments[0])) for way in ways
     )
@@ -97,7 +97,7 @@ def test_equation_1_says_that_it_is_singular_at_beta_90_degrees(robot):
 
 @given(seeds)
 @settings(max_examples=30)
-def test_the_generalized_jacobian_matches_finite_differences_along_a_reacting_motion(seed):
+def test_the_generalized_jacobian_matches_finite_differences(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     model = robot.model
     q = random_configuration(robot, rng)

@@ -16,11 +16,11 @@ IDENTITY = rotations.IDENTITY
 
 
 def total(robot, corners):
-    return Reaction(robot, np.array(corners)).attitudes(IDENTITY)[-1]
+    return Reaction.along(robot, np.array(corners)).attitudes(IDENTITY)[-1]
 
 
 def by_many_small_steps(robot, begin, end, steps):
-    """The same rotation by the midpoint rule on the group: second order, nothing shared."""
+    """The same rotation by the midpoint rule on the group: second order, other code."""
     theta = begin + (np.arange(steps)[:, None] + 0.5) / steps * (end - begin)
     rotation = IDENTITY
     for rate in connections(robot, theta) @ (end - begin):
@@ -32,11 +32,10 @@ def by_many_small_steps(robot, begin, end, steps):
 def test_halving_the_step_converges_at_sixth_order(seed):
     robot = random_robot(seed, depth=3)
     begin, end = path(robot, seed, spread=1.2)
-    exact = Reaction(robot, np.array([begin, end])).increments[0]
+    exact = Reaction.along(robot, np.array([begin, end])).increments[0]
     errors = []
     for substeps in (4, 8, 16):
-        rough = object.__new__(Reaction)
-        rough._expand(robot, begin[None], (end - begin)[None], substeps)
+        rough = Reaction(robot, begin[None], (end - begin)[None], substeps)
         errors.append(rotations.angle_between(rough.increments[0], exact))
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert errors[0] < 1e-5
@@ -47,7 +46,7 @@ def path(robot, seed, corners=2, spread=1.5):
     return np.random.default_rng(seed).uniform(-spread, spread, (corners, robot.nd))
 
 
-def test_the_dual_arm_of_maniSat_turns_its_base_as_its_closed_form_says():  # noqa: N802
+def test_the_dual_arm_rotates_its_base_as_in_closed_form():
     """13.3 kg base, two arms of two links; yaw from an independent closed form."""
     arm = []
     for side, y, yaw in (("left", 0.2, np.pi / 2), ("right", -0.2, -np.pi / 2)):
@@ -84,10 +83,10 @@ def test_the_integrator_converges_to_many_small_steps(seed):
 @given(seeds)
 @settings(max_examples=25)
 def test_its_error_stays_below_1e_9_rad(seed):
-    """One long segment against a hundred short ones, and against its own estimate."""
+    """One long segment is compared with a hundred short ones, and with its own estimate."""
     robot = random_robot(seed)
     begin, end = path(robot, seed)
-    whole = Reaction(robot, np.array([begin, end]))
+    whole = Reaction.along(robot, np.array([begin, end]))
     pieces = total(robot, np.linspace(begin, end, 101))
     assert rotations.angle_between(whole.increments[0], pieces) < 1e-9
     assert whole.error < 1e-10
@@ -114,7 +113,7 @@ def test_the_rotation_does_not_depend_on_the_timing(seed):
 
 
 def test_a_closed_joint_loop_turns_the_base(robot):
-    """Holonomy: this is how a satellite turns with its arms."""
+    """Holonomy: closed loops of the arms rotate a satellite."""
     a, b = np.zeros(6), np.zeros(6)
     a[0], b[1] = 1.2, 1.2
     turned = total(robot, [0 * a, a, a + b, b, 0 * a])
@@ -136,7 +135,7 @@ def test_a_mirror_symmetric_motion_does_not_turn_the_base(seed):
 
 def test_the_rotation_within_an_edge_leads_to_its_end(robot):
     corners = path(robot, 3, corners=3)
-    reaction = Reaction(robot, corners)
+    reaction = Reaction.along(robot, corners)
     edges = np.array([0, 0, 1, 1])
     times = np.array([0.0, 1.0, 0.0, 1.0])
     got = reaction.rotation(edges, times)
@@ -146,5 +145,5 @@ def test_the_rotation_within_an_edge_leads_to_its_end(robot):
 
 def test_no_motion_of_the_arms_is_no_rotation(point, robot):
     still = np.zeros((3, 6))
-    assert np.allclose(Reaction(robot, still).increments, IDENTITY)
-    assert np.allclose(Reaction(point, np.zeros((3, 0))).increments, IDENTITY)
+    assert np.allclose(Reaction.along(robot, still).increments, IDENTITY)
+    assert np.allclose(Reaction.along(point, np.zeros((3, 0))).increments, IDENTITY)

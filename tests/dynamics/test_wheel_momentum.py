@@ -1,4 +1,4 @@
-"""Attitude-held: the angular momentum that the wheels must store."""
+"""Angular momentum of wheels that hold the attitude."""
 
 import numpy as np
 import pinocchio as pin
@@ -36,7 +36,7 @@ def held_motion(seed, edges=5):
 
 
 def robots_momentum(motion, s, step=1e-4):
-    """(3,) of base and arms per unit of s, world axes, from differences of the bodies' poses."""
+    """(3,) momentum of base and arms per unit of s, world axes, from finite differences."""
     model, data = motion.robot.model, motion.robot.model.createData()
     parameters = np.array([s - step, s, s + step]) * motion.edges
     edge = np.full(3, int(s * motion.edges))
@@ -61,7 +61,7 @@ def robots_momentum(motion, s, step=1e-4):
 
 @given(seeds)
 @settings(max_examples=30)
-def test_wheels_store_the_opposite_of_what_differences_of_the_bodies_poses_say(seed):
+def test_wheels_store_minus_the_momentum_of_finite_differences(seed):
     motion = held_motion(seed)
     times = np.array([0.9, 2.3, 3.1])
     found = wheel_momentum(motion, 4.0, times)
@@ -77,7 +77,7 @@ def test_wheels_store_the_opposite_of_what_differences_of_the_bodies_poses_say(s
     )
 
 
-def test_the_time_law_rests_at_both_ends_and_its_rate_is_its_derivative():
+def test_the_quintic_law_rests_at_both_ends():
     u = np.linspace(0.0, 1.0, 101)
     s, rate = rest_to_rest(u)
     ahead, behind = rest_to_rest(u[1:-1] + 1e-6)[0], rest_to_rest(u[1:-1] - 1e-6)[0]
@@ -97,7 +97,7 @@ def test_momentum_goes_as_one_over_the_duration(seed, duration):
     assert slow.peak * duration == pytest.approx(unit.peak, rel=1e-9)
 
 
-def test_nothing_is_stored_at_rest_nor_where_neither_arms_nor_attitude_move():
+def test_nothing_is_stored_without_motion_of_arms_or_attitude():
     motion = held_motion(3)
     found = wheel_momentum(motion, 10.0)
     assert np.all(found.vectors[[0, -1]] == 0.0)
@@ -111,7 +111,7 @@ def test_nothing_is_stored_at_rest_nor_where_neither_arms_nor_attitude_move():
 @given(seeds)
 @settings(max_examples=20)
 def test_turning_the_frame_of_the_whole_motion_turns_the_vector(seed):
-    """In world axes; in base axes nothing changes. Carrying it elsewhere does nothing at all."""
+    """In world axes; in base axes nothing changes. A translation changes neither."""
     motion, rng = held_motion(seed), np.random.default_rng(seed)
     turn = rotations.from_angles(rng.uniform(-1.5, 1.5, 3))
     rotation, shift = rotations.matrix(turn), rng.normal(size=3)
@@ -135,8 +135,8 @@ def test_a_turn_without_arms_stores_inertia_times_rate():
     assert found.vectors[500, 2] < 0.0  # the wheels spin against the base
 
 
-def test_an_arm_that_turns_alone_stores_its_reduced_inertia_times_rate():
-    """Closed form: two bodies about their common centre of mass, the base not turning."""
+def test_one_rotating_arm_stores_its_reduced_inertia_times_rate():
+    """Closed form: two bodies about their common centre of mass, the base at rest."""
     robot = robot_from_urdf(
         urdf(
             link("base", inertial(6.0, (1.0, 1.0, 1.0))),
@@ -199,7 +199,7 @@ def test_verification_notices_world_axes_passed_off_as_the_bases(monkeypatch):
 
 def test_without_wheels_nothing_is_stored_and_the_mode_is_named(fig2a_plan):
     assert fig2a_plan.verify(2).wheel_momentum_error is None
-    with pytest.raises(fp.InvalidInput, match="'attitude-held'; otherwise there are no wheels"):
+    with pytest.raises(fp.InvalidInput, match="'attitude-held'; other modes have no wheels"):
         fig2a_plan.wheel_momentum(duration=60.0)
 
 

@@ -60,12 +60,12 @@ def look_at(seed: int, scenes: int = 12) -> Counts:
     joints = dict(zip(robot.joint_names, robot.joint_values(q).T, strict=True))
     poses = bodies.link_poses(pose(q[:, :3], q[:, 3:7]), joints)
     placed = [poses[shape.link] @ shape.placement for shape in bodies.shapes]
-    counts, prover = Counts(), Prover(motion, fp.Scene(), TOLERANCE)
+    counts = Counts()
     for _ in range(scenes):
         scene, clearance = grazing_scene(rng, bodies, placed)
         if scene is None:
             continue
-        prover = prover.among(scene)
+        prover = Prover(motion, scene, TOLERANCE)
         still = np.zeros(3)
         ends = prover.clearances(np.array([0, 1]), np.zeros((2, 3)))
         verdict = prover.certify(0, still, still, (float(ends[0]), float(ends[1])))

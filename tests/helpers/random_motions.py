@@ -3,7 +3,7 @@
 import numpy as np
 
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.trajectory.limits import read_limits
+from ffsr_plan.trajectory.flight_limits import read_limits
 from ffsr_plan.trajectory.timed_plan import timed
 from tests.helpers.builders import random_configuration, random_robot
 
@@ -37,15 +37,21 @@ def bent_motion(seed, mode, edges=4, joints_bend=False, depth=3):
     return Motion(robot, mode, start, goal, way, values)
 
 
+def straight_motion(robot, points, mode="free-flying"):
+    """The base along straight lines between points (m + 1, 3), the joints at rest."""
+    start, goal = (robot.configuration(p) for p in (points[0], points[-1]))
+    return Motion(robot, mode, start, goal, np.array(points, dtype=float))
+
+
 def inside(flight, count=30, share=1e-3):
     """Times (N,) and steps h (N,) [s]: from t - h to t + h the acceleration does not jump.
 
     `share` is that of h in the length of the piece.
     """
-    rng, ends = np.random.default_rng(0), flight._law.times
+    rng, ends = np.random.default_rng(0), flight.switch_times
     piece = np.sort(rng.integers(0, len(ends) - 1, count))
     length = np.diff(ends)[piece]
     return ends[piece] + rng.uniform(2 * share, 1.0 - 2 * share, count) * length, share * length
 
 
-__all__ = ["USUAL", "bent_motion", "flown", "inside", "read"]
+__all__ = ["USUAL", "bent_motion", "flown", "inside", "read", "straight_motion"]

@@ -53,11 +53,11 @@ def turning_oracle(problem, bin_width=HALF_DEGREE / 2, most=240 * HALF_DEGREE):
     assert lattice.alike
     assert not len(problem.scene)
     assert problem.delta_d == 0.0
-    turns, allowed = lattice.turns[0], lattice.allowed[0]
+    turns, allowed = lattice.step_rotations[0], lattice.allowed[0]
     assert not np.any(turns[..., :2]), "only for robots that turn in their plane"
     lengths, yaws = _programme(
         2.0 * np.arctan2(turns[..., 2], turns[..., 3]),
-        np.sqrt(lattice.bends[0]),
+        np.sqrt(lattice.squared_steps[0]),
         np.where(allowed[lattice.successors], lattice.successors, -1),
         problem.lattice.divisions,
         lattice.origin,

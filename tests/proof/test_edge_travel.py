@@ -1,4 +1,4 @@
-"""Bounds along the edges of a motion: no shape outruns them, over any interval asked for."""
+"""Travel bounds along the edges of a motion: no shape exceeds them on any interval."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ SAMPLES = 60
 
 
 def motion_of(seed, mode, edges=3):
-    """Start and goal have the same attitude: held, the base does not turn; reacting, it does."""
+    """A motion with equal attitudes at start and goal; the base rotates only by reaction."""
     rng, robot = np.random.default_rng(seed), random_tree(seed)
     begin = rng.uniform(-1, 1, robot.nd)
     step = rng.normal(size=robot.nd) * 10.0 ** rng.uniform(-2.0, 0.3)
@@ -32,7 +32,7 @@ def motion_of(seed, mode, edges=3):
 
 
 def traced(motion, layer, begin, end, base_step):
-    """(P,) length of the way of every point that matters, and (P, SAMPLES + 1, 3) where it was."""
+    """(P,) path length of every point of the bound [m], and (g,) first point of each shape."""
     times = np.linspace(begin, end, SAMPLES + 1)
     q = motion.at(np.full(len(times), layer), times)
     robot, bound = motion.robot, TravelBound(motion.robot)
@@ -49,15 +49,15 @@ def traced(motion, layer, begin, end, base_step):
 @pytest.mark.parametrize("mode", list(Mode))
 @given(seeds)
 @settings(max_examples=150)
-def test_no_shape_outruns_the_bound_over_any_dyadic_interval(mode, seed):
+def test_no_shape_exceeds_the_bound_on_any_dyadic_interval(mode, seed):
     motion, rng = motion_of(seed, mode), np.random.default_rng(seed)
     travel = EdgeTravel(motion)
     for _ in range(4):
         layer, level = int(rng.integers(motion.edges)), int(rng.integers(0, 6))
         part = int(rng.integers(2**level))
         begin, end = part / 2**level, (part + 1) / 2**level
-        whole = travel._over(0.0, 1.0)[0].world
-        # the base keeps step with one of the points, so that little is left of its travel
+        whole = travel.over(0.0, 1.0)[0].world
+        # the base compensates the velocity of a point, so that its travel is small
         step = -whole.velocity[layer, int(rng.integers(whole.velocity.shape[1]))]
         step = step if rng.random() < 0.6 else rng.normal(size=3) * 0.3
         step = np.zeros(3) if motion.mode.floats else step
@@ -70,9 +70,9 @@ def test_no_shape_outruns_the_bound_over_any_dyadic_interval(mode, seed):
 
 @given(seeds)
 @settings(max_examples=150)
-def test_a_part_of_an_interval_is_bounded_by_what_is_known_of_the_whole(seed):
+def test_a_part_is_bounded_by_the_numbers_of_its_interval(seed):
     motion, rng = motion_of(seed, "free-flying", edges=1), np.random.default_rng(seed)
-    whole = EdgeTravel(motion)._over(0.0, 1.0)[0].world
+    whole = EdgeTravel(motion).over(0.0, 1.0)[0].world
     step = -whole.velocity[0, int(rng.integers(whole.velocity.shape[1]))]
     for part in (0, 1, 2, 3, 5, 7):
         ways, first = traced(motion, 0, part / 8, (part + 1) / 8, step)
@@ -81,7 +81,7 @@ def test_a_part_of_an_interval_is_bounded_by_what_is_known_of_the_whole(seed):
 
 
 def self_apart(robot, begin, end, samples=300):
-    """Least lower bound on the distance of links that must not touch, by the re-check's code."""
+    """Lower bound on the distance of links that must not touch, by the verification's code."""
     motion = Motion(robot, "attitude-held", begin, end, np.zeros((2, 3)))
     q = motion.at(np.zeros(samples + 1, dtype=int), np.linspace(0, 1, samples + 1))
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
@@ -96,7 +96,7 @@ def self_apart(robot, begin, end, samples=300):
 
 @given(seeds)
 @settings(max_examples=60)
-def test_links_that_are_proven_to_keep_apart_never_touch(seed):
+def test_links_that_are_proven_apart_never_touch(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     values = rng.uniform(-2.0, 2.0, robot.nd)
     steps = rng.normal(size=robot.nd)
@@ -110,7 +110,7 @@ def test_links_that_are_proven_to_keep_apart_never_touch(seed):
 
 
 def test_two_sliders_that_pass_through_each_other_are_caught():
-    """Each travels less than the clearances at the ends sum to; both together travel more."""
+    """Each travels less than the sum of the clearances at the ends; both together travel more."""
     small = inertial(1.0, (0.01, 0.01, 0.01))
     robot = robot_from_urdf(
         urdf(

@@ -1,4 +1,4 @@
-"""Proofs about edges: nothing called free touches, nothing that keeps clear is refused."""
+"""Interval halving: no free verdict for an edge that touches, no refusal of a clear edge."""
 
 import math
 
@@ -17,7 +17,7 @@ seeds = st.integers(0, 100_000)
 
 
 class Line:
-    """A point passing a disc at lateral distance `y`: everything in closed form."""
+    """A point passing a disc at lateral distance `y`, in closed form."""
 
     rounding = ROUNDING
 
@@ -49,7 +49,7 @@ def test_tangency_counts_as_blocked():
 
 
 @given(st.floats(1e-3, 2.0))
-def test_an_edge_that_keeps_more_than_the_tolerance_is_proven_free(spare):
+def test_an_edge_clearer_than_the_tolerance_is_proven_free(spare):
     assert along_a_line(1.0 + spare)[0].free
 
 
@@ -61,19 +61,19 @@ def test_an_edge_that_runs_through_is_refused(y):
 
 
 @given(st.floats(1e-12, 9e-5))
-def test_an_edge_is_refused_only_where_it_comes_nearer_than_the_tolerance(spare):
+def test_an_edge_is_refused_only_below_the_tolerance(spare):
     verdict, _ = along_a_line(1.0 + spare)
     assert verdict.free or verdict.least_clearance <= 1e-4
 
 
 @given(st.floats(1e-6, 3.0), st.floats(0.01, 0.5))
-def test_the_clearance_bound_is_below_the_least_clearance_and_near_it(spare, slack):
+def test_the_clearance_bound_is_close_below_the_least_clearance(spare, slack):
     edge = Line(1.0 + spare)
     bound, met = clearance_bound(edge, edge.ends, np.inf, slack)
     assert (1.0 - 1.1 * slack) * spare <= bound <= spare * (1 + 1e-12) <= met * (1 + 1e-9)
 
 
-def test_an_edge_clearer_than_the_rest_of_the_path_is_not_looked_at_closely():
+def test_an_edge_clearer_than_the_path_needs_few_queries():
     edge = Line(3.0)
     ends, edge.asked = edge.ends, []
     bound, met = clearance_bound(edge, ends, 0.1, 0.05)
@@ -82,7 +82,7 @@ def test_an_edge_clearer_than_the_rest_of_the_path_is_not_looked_at_closely():
 
 
 class TwoLinks(Line):
-    """One link rests beside an obstacle, another goes far where there is none."""
+    """One link is at rest beside an obstacle, another moves far away from obstacles."""
 
     def __init__(self, beside=0.01):
         super().__init__(0.0, end=2.0)
@@ -99,7 +99,7 @@ class TwoLinks(Line):
         return np.array([0.0, (end - begin) * self.speed])
 
 
-def test_a_link_that_stays_near_an_obstacle_is_no_concern_of_one_that_moves_far_from_it():
+def test_a_near_link_at_rest_does_not_affect_a_far_moving_one():
     edge = TwoLinks()
     verdict = certify(edge, (0.01, 0.01), 1e-4)
     assert verdict.free

@@ -24,21 +24,21 @@ def swing_of_the_arms(robot):
 
 @given(st.integers(0, 10**6))
 @settings(max_examples=40)
-def test_no_motion_is_called_free_that_touches_and_none_refused_that_keeps_a_millimetre(seed):
+def test_no_touching_motion_is_free_and_no_clear_one_refused(seed):
     found = look_at(seed, scenes=4)
     assert found.false_free == 0
     assert found.wrongly_refused == 0
 
 
 def test_grazing_motions_are_proven_free_and_refused():
-    """The law above would hold for a prover that never says anything."""
+    """The law above alone would hold for a prover that gives no verdict."""
     found = [look_at(seed, scenes=6) for seed in range(8)]
     assert sum(f.grazing_free for f in found) >= 8
     assert sum(f.refused for f in found) >= 8
     assert SURELY_FREE < 1e-2
 
 
-def test_a_motion_that_is_free_at_a_held_attitude_may_collide_when_the_base_reacts(robot):
+def test_a_motion_free_at_a_held_attitude_may_collide_reacting(robot):
     begin, end = swing_of_the_arms(robot)
     reacting = fp.certify_edge(robot, BESIDE_THE_ARMS, begin, end)
     held = fp.certify_edge(robot, BESIDE_THE_ARMS, begin, end, mode="attitude-held")
@@ -119,15 +119,15 @@ def test_a_clearance_is_a_number_that_knows_its_pair(robot):
     [
         ({"robot": "planar_dual_arm"}, "robot"),
         ({"scene": [[0, 0, 0]]}, "scene"),
-        ({"begin": [0.0, 1.0]}, "begin"),
-        ({"end": np.full(13, np.nan)}, "end"),
+        ({"start": [0.0, 1.0]}, "start"),
+        ({"goal": np.full(13, np.nan)}, "goal"),
         ({"mode": "free-fling"}, "mode.*free-flying"),
         ({"tolerance": 0.0}, "tolerance"),
     ],
 )
 def test_arguments_are_checked_by_name(robot, wrong, named):
     q = robot.neutral()
-    given_ = {"robot": robot, "scene": fp.Scene(), "begin": q, "end": q, **wrong}
+    given_ = {"robot": robot, "scene": fp.Scene(), "start": q, "goal": q, **wrong}
     with pytest.raises(fp.InvalidInput, match=named):
         fp.certify_edge(**given_)
 
@@ -142,15 +142,15 @@ def cylinder_beside(gap):
 
 @pytest.mark.parametrize("gap", [1e-3, 1e-4, 1e-6, 3e-7])
 def test_a_proof_ends_however_near_a_hull_comes(gap):
-    """The margin for what Coal iterates may be more than is left: then the motion is refused."""
+    """If the margin for Coal's iterations exceeds the clearance, the motion is refused."""
     robot, scene = cylinder_beside(gap)
     proof = fp.certify_edge(robot, scene, robot.neutral(), robot.neutral())
     assert proof.free or gap < 1e-6
     assert 0.0 <= proof.proven_clearance <= gap + 1e-8
 
 
-def test_the_margin_of_a_proof_grows_with_the_sphere_that_a_hull_is_near():
-    """Coal's iterations are relative to the distance of the middles, here 5 km and 50 km."""
+def test_the_margin_of_a_proof_grows_with_the_spheres_radius():
+    """The error of Coal's iterations grows with the distance of the centres, here 5 and 50 km."""
     for radius in (5e3, 5e4):
         robot, _ = cylinder_beside(0.1)
         q = robot.neutral()

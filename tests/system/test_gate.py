@@ -58,7 +58,7 @@ def test_a_gate_has_the_opening_that_was_asked_for():
 def test_planners_that_know_no_attitude_refuse_and_say_why():
     problem = fp.load_scenario("gate")
     for planner in (fp.LatticeOptimum(), fp.AntSystem()):
-        with pytest.raises(fp.InvalidInput, match="depends on the way"):
+        with pytest.raises(fp.InvalidInput, match="depends on the path"):
             fp.plan(problem, planner)
     with pytest.raises(fp.InvalidInput, match="no one attitude"):
         fp.Roadmap(problem)

@@ -84,7 +84,7 @@ def test_a_free_flying_plan_flown_by_the_engine_turns_its_base_as_planned(plans,
     plan = plans["free-flying", name]
     robot = plan.problem.robot
     flight = engine.fly(robot, "free-flying", engine.course_of(plan, DURATION), DURATION)
-    reaction = Reaction(robot, flight.joints).attitudes(flight.attitudes[0])
+    reaction = Reaction.along(robot, flight.joints).attitudes(flight.attitudes[0])
     planned = plan.at(engine.progress(flight.times, DURATION)[0])
     turned = rotations.angle_between(reaction[0], reaction).max()
     off = rotations.angle_between(flight.attitudes, reaction).max()
@@ -145,7 +145,7 @@ def test_without_thrusters_base_and_arms_move_about_their_centre_of_mass(name):
     robot = robot_named(name)
     start = random_configuration(robot, np.random.default_rng(3))
     flight = engine.fly(robot, "free-floating", waving(robot, start, 20.0, 4), 20.0, every=1)
-    attitudes = Reaction(robot, flight.joints).attitudes(start[3:7])
+    attitudes = Reaction.along(robot, flight.joints).attitudes(start[3:7])
     levers = centers_of_mass(robot, flight.joints)
     turned = np.einsum("nij,nj->ni", rotations.matrix(attitudes), levers)
     positions = start[:3] + turned[0] - turned

@@ -1,4 +1,4 @@
-"""Plans for other tools: tables with a unit in every header, and dictionaries."""
+"""Tables with a unit in every header, and dictionaries of plans."""
 
 import csv
 import json
@@ -15,7 +15,7 @@ from tests.helpers.builders import box, inertial, joint, link, urdf
 
 @pytest.fixture(scope="module")
 def plan():
-    """A hinge, a slide and a joint without end that passes half a turn, on a bent path."""
+    """A revolute, a prismatic and a continuous joint past half a turn, on a path with corners."""
     body = inertial(1.0, (0.05, 0.06, 0.07), (0.1, 0.0, 0.0))
     robot = robot_from_urdf(
         urdf(
@@ -48,7 +48,7 @@ def flight(plan):
 
 
 def read(path):
-    """Columns by header, read by Python's own reader of such files."""
+    """Columns by header, read by Python's csv module."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     values = np.array(rows[1:], dtype=float)
@@ -173,7 +173,7 @@ def test_dictionaries_that_are_no_plan_are_refused(data):
         fp.Plan.from_dict(data)
 
 
-def test_a_dictionary_with_fields_changed_for_the_impossible_is_refused(plan):
+def test_a_dictionary_with_impossible_fields_is_refused(plan):
     for field, value in (("clearances", [0.1]), ("length", "long"), ("nodes", [99] * 7)):
         with pytest.raises(fp.InvalidInput):
             fp.Plan.from_dict(plan.to_dict() | {field: value})

@@ -1,4 +1,4 @@
-"""MuJoCo's inverse dynamics, of the same URDF, wants the forces that a timed plan states."""
+"""MuJoCo's inverse dynamics for the same URDF gives the forces of a timed plan."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def inverse_dynamics(robot, states):
 @pytest.mark.parametrize("mode", list(Mode))
 @pytest.mark.parametrize("joints_bend", [False, True])
 def test_the_engine_wants_the_same_thrust_wheels_and_torques(seed, mode, joints_bend):
-    """A force through the centre of mass, a moment where wheels hold, nothing where it floats."""
+    """A force through the centre of mass, a moment with wheels, neither in free floating."""
     motion = bent_motion(seed, mode, joints_bend=joints_bend)
     flight = flown(motion, **USUAL)
     states = flight.at(inside(flight)[0])

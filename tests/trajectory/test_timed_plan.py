@@ -1,4 +1,4 @@
-"""Plans with a time law: what moves when, and what brings it about."""
+"""Flights: velocities, forces, momentum and energy along a timed plan."""
 
 from itertools import pairwise
 
@@ -15,7 +15,7 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import wheel_momentum
 from ffsr_plan.robots.robot import robot_from_urdf
 from tests.helpers.builders import box, inertial, joint, link, urdf
-from tests.helpers.random_motions import USUAL, bent_motion, flown, inside
+from tests.helpers.random_motions import USUAL, bent_motion, flown, inside, straight_motion
 
 SEEDS = (7, 39)  # robots with hinges and slides
 seeds = st.integers(0, 10_000)
@@ -30,19 +30,14 @@ def mass(robot):
 
 
 def centers(robot, q):
-    """(N, 3) of mass, world [m]."""
+    """(N, 3) centres of mass, world axes [m]."""
     data = robot.model.createData()
     return np.array([pin.centerOfMass(robot.model, data, each) for each in q])
 
 
-def straight(robot, way, mode="free-flying", **ends):
-    q = [robot.configuration(p) for p in (way[0], way[-1])]
-    return Motion(robot, mode, *q, np.array(way, dtype=float))
-
-
 def test_a_straight_flight_takes_twice_its_peak_speed_of_delta_v(point):
     """Closed form: 4 m at 0.01 m/s^2 without and with a limit on the speed."""
-    motion = straight(point, [(0, 0, 0), (4, 0, 0)])
+    motion = straight_motion(point, [(0, 0, 0), (4, 0, 0)])
     free = flown(motion, thruster_acceleration=0.01)
     assert free.duration == pytest.approx(2.0 * np.sqrt(4.0 / 0.01))
     assert free.delta_v == pytest.approx(2.0 * np.sqrt(4.0 * 0.01), rel=1e-12)
@@ -77,9 +72,7 @@ def test_velocities_and_accelerations_are_derivatives(seed, mode, joints_bend):
 
 @given(seeds, st.sampled_from(list(Mode)), st.booleans(), st.booleans())
 @settings(max_examples=12)
-def test_no_limit_is_exceeded_at_ten_thousand_instants_and_some_limit_is_met(
-    seed, mode, joints_bend, smooth
-):
+def test_no_limit_is_exceeded_and_some_limit_is_attained(seed, mode, joints_bend, smooth):
     motion = bent_motion(seed, mode, joints_bend=joints_bend)
     given = USUAL | {"joint_velocity": 0.15, "base_velocity": 0.3, "turn_velocity": 0.05}
     if smooth:
@@ -109,7 +102,7 @@ def test_no_limit_is_exceeded_at_ten_thousand_instants_and_some_limit_is_met(
 
 @given(seeds, st.sampled_from(list(Mode)))
 @settings(max_examples=10)
-def test_half_the_speed_and_a_quarter_of_the_acceleration_double_the_duration(seed, mode):
+def test_half_speed_and_quarter_acceleration_double_the_duration(seed, mode):
     motion = bent_motion(seed, mode)
     fast = flown(
         motion, joint_velocity=0.2, joint_acceleration=0.05, thruster_acceleration=0.02,
@@ -128,7 +121,7 @@ def test_half_the_speed_and_a_quarter_of_the_acceleration_double_the_duration(se
         assert np.allclose(getattr(one, name), 4.0 * getattr(other, name), rtol=1e-6, atol=1e-9)
 
 
-def test_every_configuration_is_one_of_the_plan_and_s_never_goes_back(fig2a_plan):
+def test_configurations_are_the_plans_and_s_never_decreases(fig2a_plan):
     flight = fig2a_plan.timed(joint_acceleration=0.1, thruster_acceleration=0.01)
     states = flight.at(np.linspace(0.0, flight.duration, 2001))
     assert np.all(np.diff(states.parameters) >= 0.0)
@@ -156,7 +149,7 @@ def test_momentum_is_what_the_mode_says(seed, mode, joints_bend):
 
 
 @cases
-def test_thrust_is_mass_times_the_acceleration_of_the_centre_of_mass(seed, mode, joints_bend):
+def test_thrust_is_mass_times_acceleration_of_the_mass_centre(seed, mode, joints_bend):
     motion = bent_motion(seed, mode, joints_bend=joints_bend)
     flight = flown(motion, **USUAL)
     times, h = inside(flight, share=1e-2)
@@ -172,7 +165,7 @@ def test_thrust_is_mass_times_the_acceleration_of_the_centre_of_mass(seed, mode,
 def test_delta_v_is_the_integral_of_thrust_over_mass(seed, mode, joints_bend):
     motion = bent_motion(seed, mode, joints_bend=joints_bend)
     flight = flown(motion, **USUAL)
-    edges, total = flight._law.times, 0.0
+    edges, total = flight.switch_times, 0.0
     for begin, end in pairwise(edges):
         times = np.linspace(begin, np.nextafter(end, 0.0), 200)
         push = np.linalg.norm(flight.at(times).thrust, axis=1) / mass(motion.robot)
@@ -183,7 +176,7 @@ def test_delta_v_is_the_integral_of_thrust_over_mass(seed, mode, joints_bend):
 
 
 @cases
-def test_what_torques_thrust_and_wheels_do_is_the_change_of_kinetic_energy(seed, mode, joints_bend):
+def test_the_work_of_all_forces_is_the_change_of_kinetic_energy(seed, mode, joints_bend):
     motion = bent_motion(seed, mode, joints_bend=joints_bend)
     robot, flight = motion.robot, flown(motion, **USUAL)
     data = robot.model.createData()
@@ -211,7 +204,7 @@ def test_what_torques_thrust_and_wheels_do_is_the_change_of_kinetic_energy(seed,
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_wheels_turn_the_base_by_what_they_lose_of_their_momentum(seed):
+def test_wheel_torque_is_minus_the_rate_of_wheel_momentum(seed):
     motion = bent_motion(seed, "attitude-held")
     flight = flown(motion, **USUAL)
     times, h = inside(flight)
@@ -227,7 +220,7 @@ def test_wheels_turn_the_base_by_what_they_lose_of_their_momentum(seed):
     assert np.allclose(torque, lost, atol=1e-5 * np.abs(torque).max())
 
 
-def test_wheels_store_the_same_per_pace_as_under_another_time_law():
+def test_wheel_momentum_per_pace_does_not_depend_on_the_time_law():
     motion = bent_motion(7, "attitude-held")
     flight = flown(motion, **USUAL)
     times, h = inside(flight)
@@ -245,7 +238,7 @@ def test_wheels_store_the_same_per_pace_as_under_another_time_law():
 
 
 def arm_only(mode="free-flying"):
-    """A base that stays where it is and an arm of a third of its mass that turns."""
+    """A base at rest with a rotating arm of a third of its mass."""
     robot = robot_from_urdf(
         urdf(
             link("base", inertial(6.0, (1.0, 1.0, 1.0)), box((1, 1, 1))),
@@ -258,7 +251,7 @@ def arm_only(mode="free-flying"):
     return Motion(robot, mode, start, goal, np.zeros((5, 3)))
 
 
-def test_thrusters_that_hold_the_base_against_an_arm_limit_how_fast_it_swings():
+def test_thrusters_that_hold_the_base_limit_the_speed_of_an_arm():
     motion = arm_only()
     free = flown(motion, joint_acceleration=0.2, thruster_acceleration=1.0)
     for limit in (0.02, 0.002):
@@ -284,184 +277,17 @@ def test_joint_torques_stay_within_their_limits_and_meet_one(seed, mode):
     assert flight.duration > free.duration
 
 
-def bend(degrees, **given):
-    """Two legs of 10 m with a corner between them."""
-    robot = fp.load_robot("point")
-    angle = np.radians(degrees)
-    way = [(0, 0, 0), (10, 0, 0), (10 + 10 * np.cos(angle), 10 * np.sin(angle), 0)]
-    return flown(straight(robot, way), thruster_acceleration=0.02, **given)
-
-
-def test_a_pulse_passes_a_corner_at_the_speed_at_which_it_suffices():
-    """Closed form: v' - v of two velocities of equal size v at an angle is 2 v sin(angle / 2)."""
-    rest, passed = bend(40.0), bend(40.0, velocity_jump=0.1)
-    speed = 0.1 / (2.0 * np.sin(np.radians(20.0)))
-    assert len(rest.rests) == 1
-    assert len(passed.rests) == len(rest.pulses) == 0
-    assert np.linalg.norm(passed.pulses, axis=1) == pytest.approx([0.1])
-    (corner,) = passed.pulse_times
-    states = passed.at([corner - 1e-9, corner])
-    assert np.allclose(np.linalg.norm(states.base_velocity, axis=1), speed, atol=1e-9)
-    assert np.allclose(np.diff(states.base_velocity, axis=0), passed.pulses, atol=1e-9)
-    peak = np.sqrt(0.02 * 10.0 + speed**2 / 2.0)
-    assert passed.duration == pytest.approx(2.0 * (2.0 * peak - speed) / 0.02)
-    assert passed.delta_v == pytest.approx(2.0 * (2.0 * peak - speed) + 0.1)
-    assert rest.duration == pytest.approx(4.0 * np.sqrt(10.0 / 0.02))
-
-
-@pytest.mark.parametrize("degrees", [3.0, 40.0, 90.0, 170.0])
-def test_a_pulse_that_takes_time_cuts_the_corner_by_what_is_stated(degrees):
-    """Evenly over its length: the path's velocity averaged over as long, flown at a steady pace."""
-    flight = bend(degrees, velocity_jump=0.05)
-    (pulse,), (corner,) = flight.pulses, flight.pulse_times
-    (after,) = flight.at([corner]).base_velocity
-    lasts = np.linalg.norm(pulse) / 0.02
-    t = np.linspace(-lasts, lasts, 4001)
-    sharp = np.where(t[:, None] < 0.0, (after - pulse) * t[:, None], after * t[:, None])
-    share = np.clip(t / lasts + 0.5, 0.0, 1.0)
-    velocity = after - pulse + share[:, None] * pulse
-    steps = np.diff(t)[:, None] * (velocity[1:] + velocity[:-1]) / 2.0
-    round_ = sharp[0] + np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])
-    assert np.allclose(round_[-1], sharp[-1], atol=1e-9)
-    cut = np.linalg.norm(round_ - sharp, axis=1).max()
-    assert flight.corner_cut == pytest.approx(cut, rel=1e-6)
-
-
-@pytest.mark.parametrize("second", [5.0, -5.0])
-def test_pulses_that_overlap_cut_no_deeper_than_stated(second, point):
-    """Two corners so near that the first pulse has not ended where the second begins."""
-    turns = np.radians([0.0, 5.0, 5.0 + second])
-    legs = np.array([10.0, 0.2, 10.0])[:, None] * [(np.cos(a), np.sin(a), 0.0) for a in turns]
-    way = np.vstack([np.zeros(3), np.cumsum(legs, axis=0)])
-    flight = flown(straight(point, way), thruster_acceleration=0.02, velocity_jump=0.035)
-    gap = np.diff(flight.pulse_times)
-    lasts = np.linalg.norm(flight.pulses, axis=1) / 0.02
-    assert 0.0 < gap < lasts.min() / 2.0
-    t = np.linspace(-3.0, 3.0, 6001) + flight.pulse_times.mean()
-    share = (t[:, None] - flight.pulse_times) / lasts
-    off = np.clip(share + 0.5, 0.0, 1.0) - (share >= 0.0)
-    away = np.cumsum(off @ flight.pulses, axis=0) * (t[1] - t[0])
-    cut = np.linalg.norm(away, axis=1).max()
-    assert np.linalg.norm(away[-1]) < 1e-4
-    assert cut <= flight.corner_cut * (1.0 + 1e-3)
-    alone = lasts.max() ** 2 * 0.02 / 8.0
-    assert flight.corner_cut > 1.05 * alone
-    if second > 0.0:  # they add up
-        assert cut > 0.95 * flight.corner_cut
-
-
-def test_arms_keep_their_pace_through_a_pulse(robot):
-    start = robot.configuration(joints={"left_1": -0.6})
-    goal = robot.configuration((4, 0, 0), joints={"left_1": 0.7, "right_1": 0.5})
-    way = np.array([(0, 0, 0), (2, 0.5, 0), (4, 0, 0)], dtype=float)
-    motion = Motion(robot, "free-flying", start, goal, way)
-    flight = flown(motion, **USUAL, velocity_jump=0.04)
-    before, after = flight.at([flight.pulse_times[0] - 1e-9, flight.pulse_times[0]]).velocities
-    assert np.abs(after[6:]).max() > 0.01
-    assert np.allclose(before[3:], after[3:], atol=1e-9)  # nor does the base's turning change
-    assert np.allclose(flight.pulses[0], np.array([0, -0.04, 0]), atol=1e-9)
-
-
-@pytest.mark.parametrize("mode", ["free-flying", "attitude-held"])
-def test_slowed_down_for_a_torque_arms_and_turn_still_keep_their_pace_through_pulses(mode):
-    motion = bent_motion(7, mode)
-    given = USUAL | {"velocity_jump": 0.3, "joint_torque": 1e-3}
-    flight = flown(motion, **given)
-    assert len(flight.pulses) == 3
-    just = 1e-9 * flight.duration
-    before, after = (flight.at(flight.pulse_times - d) for d in (just, 0.0))
-    assert np.abs(after.velocities[:, 6:]).max() > 1e-4
-    assert np.allclose(before.velocities[:, 3:], after.velocities[:, 3:], atol=1e-9)
-    assert np.allclose(after.base_velocity - before.base_velocity, flight.pulses, atol=1e-8)
-    states = flight.at(flight.clock(2000 / flight.duration))
-    assert 0.9e-3 < np.abs(states.torques).max() < 1e-3
-
-
-def test_a_base_that_wheels_turn_rests_where_it_would_have_to_turn_at_another_pace():
-    q = bent_motion(7, "attitude-held")
-    uneven = np.linspace(0.0, 1.0, 5)[:, None] ** 2
-    robot, start = q.robot, q.configurations()[0]
-    goal = np.array(start)
-    goal[:3] += 1.0
-    turned = np.array(goal)
-    turned[3:7] = rotations.multiply(goal[3:7], rotations.exp(np.array([0.0, 0.0, 0.5])))
-    way = start[:3] + uneven
-    assert len(flown(Motion(robot, "attitude-held", start, goal, way), **USUAL).rests) == 0
-    assert len(flown(Motion(robot, "attitude-held", start, turned, way), **USUAL).rests) == 3
-
-
-def test_where_joints_have_a_corner_no_pulse_helps():
-    motion = bent_motion(7, "free-flying", joints_bend=True)
-    flight = flown(motion, **USUAL, velocity_jump=0.1)
-    assert len(flight.rests) == 3
-    assert len(flight.pulses) == 0
-
-
-def test_pulses_that_cut_deeper_than_what_is_proven_clear_are_refused(fig2a_plan):
-    clear = fig2a_plan.certificate.least_clearance
-    most = np.sqrt(8.0 * 0.01 * clear)
-    given = {"joint_acceleration": 0.1, "thruster_acceleration": 0.01}
-    flight = fig2a_plan.timed(**given, velocity_jump=0.95 * most)
-    assert 0.9 * clear < flight.corner_cut < clear
-    assert flight.duration < fig2a_plan.timed(**given).duration
-    with pytest.raises(fp.InvalidInput, match=r"velocity_jump: got .* proven clear") as refused:
-        fig2a_plan.timed(**given, velocity_jump=3.0 * most)
-    advised = float(refused.value.allowed.split()[1])
-    assert 0.5 * clear < fig2a_plan.timed(**given, velocity_jump=advised).corner_cut < clear
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"thruster_acceleration": 0.01}, "joint_acceleration, joint left_1: got None"),
-        ({"joint_acceleration": 0.1}, "thruster_acceleration: got None"),
-        ({"joint_acceleration": 0.1, "thruster_acceleration": 0.0}, "greater than 0"),
-        ({"joint_acceleration": -0.1, "thruster_acceleration": 0.1}, "greater than 0"),
-        ({"joint_acceleration": {"left_9": 0.1}}, "did you mean 'left_1'|left_1"),
-        ({"joint_acceleration": {"left_1": "fast"}}, r"joint_acceleration\.left_1"),
-        ({"joint_velocity": np.nan}, "joint_velocity"),
-        ({"velocity_jump": -0.1}, "at least 0"),
-        ({"velocity_jump": 0.01, "joint_jerk": 0.1}, "a jump is a jerk without limit"),
-        ({"base_velocity": True}, "base_velocity"),
-    ],
-)
-def test_limits_that_are_missing_or_cannot_be_are_named(fig2a_plan, given, message):
-    with pytest.raises(fp.InvalidInput, match=message):
-        fig2a_plan.timed(**given)
-
-
-def test_a_base_that_wheels_turn_needs_a_limit_for_it():
-    motion = bent_motion(7, "attitude-held")
-    with pytest.raises(fp.InvalidInput, match="turn_acceleration"):
-        flown(motion, joint_acceleration=0.1, thruster_acceleration=0.1)
-
-
-def test_joints_keep_the_velocities_of_the_urdf_unless_told_otherwise(robot):
-    start = robot.configuration()
-    goal = robot.configuration(joints={"left_1": 1.6, "right_1": 0.8})
-    motion = Motion(robot, "free-floating", start, goal, np.zeros((4, 3)))
-    own = flown(motion, joint_acceleration=1.0)
-    assert own.duration == pytest.approx(1.6 / 0.5 + 0.5 / 1.0)  # the URDF allows 0.5 rad/s
-    told = flown(motion, joint_acceleration=1.0, joint_velocity={"right_1": 0.1})
-    assert told.duration == pytest.approx(0.8 / 0.1 + 0.1 / 0.5)  # it is half as fast as left_1
-
-
-def test_a_velocity_of_zero_in_the_urdf_is_not_taken_for_a_limit(robot):
-    still = robot_from_urdf(robot.urdf.replace('velocity="0.5"', 'velocity="0"'), "still")
-    start, goal = still.configuration(), still.configuration(joints={"left_1": 1.0})
-    motion = Motion(still, "free-floating", start, goal, np.zeros((4, 3)))
-    with pytest.raises(fp.InvalidInput, match="joint_velocity, joint left_1: got 0"):
-        flown(motion, joint_acceleration=1.0)
-    assert flown(motion, joint_acceleration=1.0, joint_velocity=1.0).duration > 0.0
-
-
-def test_a_plan_that_leads_nowhere_has_no_time_law(robot):
-    q = robot.configuration()
-    with pytest.raises(fp.InvalidInput, match="nothing moves"):
-        flown(Motion(robot, "free-flying", q, q, np.zeros((4, 3))), **USUAL)
-
-
 @pytest.mark.parametrize("times", [[], [-0.1], [1e9], [np.nan], 1.0, "now"])
 def test_times_that_cannot_be_are_refused(times):
+    flight = flown(arm_only(), joint_acceleration=0.2, thruster_acceleration=1.0)
     with pytest.raises(fp.InvalidInput):
-        bend(40.0).at(times)
+        flight.at(times)
+
+
+def test_states_name_the_base_attitude_and_the_joint_velocities():
+    flight = flown(bent_motion(7, "free-flying"), **USUAL)
+    states = flight.at(flight.clock(20.0 / flight.duration))
+    assert np.array_equal(states.attitudes, states.configurations[:, 3:7])
+    assert np.array_equal(states.joint_velocities, states.velocities[:, 6:])
+    assert repr(states) == f"States(21 instants, {flight.motion.robot.nd} joints)"
+    assert repr(flight).startswith(f"TimedPlan({flight.duration:.4g} s, 3 rests, 0 pulses")

@@ -92,7 +92,7 @@ def with_changes(problem, **changes):
 def test_verification_notices_a_proof_that_claims_too_much(fig2a_plan):
     certificate = fig2a_plan.certificate._replace(least_clearance=9.0)
     report = moved(fig2a_plan, certificate=certificate).verify(50)
-    assert "said to be proven" in " ".join(report.problems)
+    assert "the plan's proven clearance is" in " ".join(report.problems)
 
 
 def test_verification_does_not_depend_on_the_order_of_links_in_the_urdf(robot):

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.meshes.mesh_files import hull
 from ffsr_plan.robots.collision_shapes import convex
 from ffsr_plan.robots.robot import robot_from_urdf
@@ -15,6 +16,7 @@ from ffsr_plan.verification.separation import separation
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 from tests.helpers.builders import (
     box,
+    cylinder,
     inertial,
     joint,
     link,
@@ -52,7 +54,7 @@ def test_the_pairs_that_must_not_touch_are_those_of_the_robot(seed):
     assert {frozenset((a.link, b.link)) for a, b in Bodies(robot.urdf).pairs()} == planned
 
 
-def test_links_rigidly_joined_are_no_pair_but_each_is_one_with_what_lies_farther():
+def test_rigidly_joined_links_are_no_pair_but_others_are():
     cube = inertial(1.0, (1.0, 1.0, 1.0)) + box((0.2, 0.2, 0.2))
     text = urdf(
         link("base", cube), link("mast", cube), link("arm", cube), link("hand", cube),
@@ -144,3 +146,9 @@ def test_separation_is_positive_for_solids_ten_micrometres_apart(seed, first, se
     distance, there = planned(high)
     found = separation(a, here.homogeneous[None], b, there.homogeneous[None])[0]
     assert 0.0 < found <= distance + 1e-9
+
+
+def test_a_cylinder_without_a_replacement_is_refused():
+    can = urdf(link("base", inertial(1.0, (1.0, 1.0, 1.0)), cylinder(0.3, 1.0)))
+    with pytest.raises(InvalidInput, match="cylinder of link 'base'"):
+        Bodies(can)

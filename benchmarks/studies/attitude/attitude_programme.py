@@ -1,12 +1,12 @@
-"""The colony against a dynamic programme over attitude bins, on gates in the plane.
+"""Comparison of the colony with a dynamic programme over attitude bins, on planar gates.
 
     python -m benchmarks.studies.attitude.attitude_programme
 
-In the plane an attitude is one angle, so that a programme over (layer, node, yaw bin) competes with
-the colony (benchmarks/studies/attitude/yaw_programme.py says in what sense it is exact). Both pay in distance queries:
-distances from the robot to the obstacles at one node and attitude. Searches run as shipped and at
-as many queries as the programme with 81 bins asks for. The defaults take ten to twenty
-minutes. Writes docs/benchmarks/attitude_programme.md.
+In the plane an attitude is one angle, so a dynamic programme over (layer, node, yaw bin) is an
+alternative to the colony (`yaw_programme.py` explains in what sense it is exact). The cost of both
+is counted in distance queries: distances from the robot to the obstacles at one node and attitude.
+Searches run as shipped, and with as many queries as the programme with 81 bins needs. The defaults
+take ten to twenty minutes. Writes docs/benchmarks/attitude_programme.md.
 """
 
 import argparse
@@ -14,31 +14,28 @@ import math
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
-from unittest.mock import patch
 
 import numpy as np
-from ffsr_plan.search.postures.posture_planner import _worked_out
 
 import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, publish, table
 from benchmarks.studies.attitude.gates import variation
-from benchmarks.studies.attitude.query_count import count_queries, posture_grid, queries
 from benchmarks.studies.attitude.yaw_programme import REACHABLE, Way, cheapest_way, coarse_to_fine
-from ffsr_plan.search.postures import colony
-from ffsr_plan.search.postures.cost_kernels import PostureGrid
+from ffsr_plan.search.postures.colony import PostureColony
+from ffsr_plan.search.postures.path_proof import prove_path
+from ffsr_plan.search.postures.posture_grid import posture_grid
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
-from ffsr_plan.search.records import Watch
+from ffsr_plan.search.records import SearchMonitor
 from tests.helpers.spatial_robot import spatial_problem
 
 BINS, FINEST = 81, 161
 LADDER = (11, 21, 41, 81, 161)
-ANTS, ANNEALED = fp.MaxMinAntSystem(), fp.MaxMinAntSystem(ants=1, cycles=1)
-FREE_ANTS = fp.MaxMinAntSystem(pheromone=False)
-ENDLESS = fp.MaxMinAntSystem(cycles=1_000_000)
-WALKING = {"_HEATS": (), "_PATIENCE": math.inf}
+ANTS, ANNEALED = fp.PostureAnnealing(), fp.PostureAnnealing(ants=1, cycles=1)
+FREE_ANTS = fp.PostureAnnealing(pheromone=False)
+WALKING = fp.PostureAnnealing(cycles=1_000_000, temperatures=(), patience=1_000_000)
 NAMES = {
     "ants, pheromone, annealing": ANTS,
     "ants without pheromone, annealing": FREE_ANTS,
@@ -48,105 +45,92 @@ NAMES = {
 
 INTRODUCTION = f"""\
 Variations of the scenarios `gate` and `double_gate` as in [gates.md](gates.md). The programme's
-states are (layer, base offset, posture, yaw bin). Its bins share the yaws from
+states are (layer, base offset, posture, yaw bin). Its bins divide the yaws from
 -{math.degrees(REACHABLE):.0f} to {math.degrees(REACHABLE):.0f} degrees; each state keeps the true
-yaw of its cheapest way, so that the cost is that of the path at its true attitudes, by the colony's
-own functions. "Coarse to fine" runs {", ".join(map(str, LADDER))} bins in turn, and drops states
-from which no path can be cheaper than the one found so far; what is to come is bounded by distances
+yaw of its cheapest path, so the cost is that of the path at its true attitudes, by the colony's own
+functions. "Coarse to fine" runs {", ".join(map(str, LADDER))} bins in turn, and drops states from
+which no path can be cheaper than the best path so far; the remaining cost is bounded by distances
 of the base origin alone, which are not counted.
 
 A query is a distance from the robot to the obstacles at one node and attitude. Rows without "as
-shipped" had as many queries as the programme with {BINS} bins: annealing by the number of its
-shifts, ants without annealing by the number of cycles. "Proven at once" counts paths that are
-proven free edge by edge as they were found, before the planner bars an edge or squared_steps the path.
-CPU times are of one thread, without compiling and without the proof; counting the queries adds
-about a fifth to those of the ants and of annealing, nothing to the programme's.
+shipped" used as many queries as the programme with {BINS} bins: annealing by the number of its
+shifts, ants without annealing by the number of cycles. "Proven at once" counts paths whose edges
+are all proven free as the search returned them, before the planner excludes an edge or corrects the
+path. CPU times are of one thread, without compiling and without the proof.
 
-The cost is F in metres, plus {colony._MISSED[1]:.0f} m for each radian beyond half a degree
-by which the goal attitude is missed. It is given relative to the least that a programme found on
-the same problem. Programmes have no seed: one run a variation."""
+The cost is F in metres, plus {ANTS.attitude_weights[1]:.0f} m for each radian beyond half a degree
+by which the goal attitude is missed. It is given relative to the least cost of a programme on the
+same problem. Programmes have no seed: one run for each variation."""
 
 VERDICT = """\
-The programme has no seed and no temperature: the same cost each time, and finer bins show how much
-rounding may still hide. It knows no optimum for certain, as only one way into each bin lives on.
-Where it applies, in the plane, it is level with the colony or ahead of it for the same queries, and
-no slower. What the colony has ahead of it there: it is told no range of yaws and no bins, holds one
-path instead of all states, and can be stopped at any time with a path in hand. Ants without shifts
-are no match for either, and neither ants nor pheromone gain much over annealing alone."""
+The programme has no seed and no temperature: its cost is the same in each run, and finer bins show
+the remaining error of rounding. It does not prove an optimum, because only one path into each bin
+is kept. Where it applies, in the plane, it is as good as the colony or better for the same number
+of queries, and no slower. The advantages of the colony there: it needs no range of yaws and no
+bins, stores one path instead of all states, and can be stopped at any time with a path. Ants
+without shifts are worse than both, and neither ants nor pheromone improve much on annealing
+alone."""
 
 
 class Run(NamedTuple):
-    """One search."""
+    """One search.
+
+    Attributes:
+        cost: of its path [m]; infinite if there is none.
+        queries: number of distance queries.
+        seconds: CPU time [s].
+        holds: whether its path is proven free as it is and ends within a degree of the goal
+            attitude.
+    """
 
     cost: float
-    """[m]; infinite where it found nothing."""
     queries: int
     seconds: float
-    """CPU time."""
     holds: bool
-    """Whether its path is proven free as it is, the goal attitude met within a degree."""
-
-
-@dataclass(frozen=True)
-class Tally(Watch):
-    """Notes the queries after each cycle and each annealing; ends a search at its budget."""
-
-    grid: PostureGrid = field(kw_only=True)
-    budget: float = math.inf
-    counts: list[int] = field(default_factory=list)
-
-    def over(self) -> bool:
-        """Whether the budget is used up."""
-        self.counts.append(queries(self.grid))
-        return self.counts[-1] >= self.budget
 
 
 def programme(lattice: PostureLattice, solve: Callable[[], Way]) -> Run:
-    """Run a dynamic programme; its value must be what the colony would say of its path."""
+    """Run a dynamic programme; its value must equal the colony's cost of its path."""
     begin = time.process_time()
     way = solve()
     seconds = time.process_time() - begin
     if way.cost == np.inf:
         return Run(way.cost, way.queries, seconds, False)
-    again = colony.cost_of(posture_grid(lattice), way.path)
+    colony = PostureColony(lattice, posture_grid(lattice), ANTS, np.random.default_rng(0))
+    again = colony.cost(way.path)
     if not math.isclose(again, way.cost, rel_tol=1e-9):
         raise RuntimeError(f"a programme's path costs {again}, not {way.cost}")
-    holds = _worked_out(lattice, way.path).holds
+    holds = prove_path(lattice, way.path).holds
     return Run(way.cost, way.queries, seconds, holds)
 
 
-def colony(
-    lattice: PostureLattice,
-    planner: fp.MaxMinAntSystem,
-    seed: int,
-    budget: float = math.inf,
-    **settings: object,
+def colony_run(
+    lattice: PostureLattice, settings: fp.PostureAnnealing, seed: int, budget: float = math.inf
 ) -> tuple[Run, int]:
-    """Run the colony with some of its module's settings changed; also the queries of annealing."""
+    """Run the colony until `budget` queries.
+
+    Returns:
+        The run, and the number of queries of its annealings.
+    """
     grid = posture_grid(lattice)
-    watch = Tally(grid=grid, budget=budget)
+    queries = grid.queries
+    by_ants = [0]
+    monitor = SearchMonitor(
+        on_cycle=lambda _: by_ants.append(int(queries[0])),
+        stop_requested=lambda: bool(queries[0] >= budget),
+    )
     begin = time.process_time()
-    with patch.multiple(colony, _COLD=colony._COLD, **settings):
-        found = colony.search(
-            lattice, grid, planner.ants, planner.cycles, planner.pheromone,
-            np.random.default_rng(seed), watch,
-        )  # fmt: skip
-        rounds = len(colony._HEATS)
-    seconds, asked = time.process_time() - begin, queries(grid)
-    before = [0, *watch.counts][-1 - rounds]
-    holds = _worked_out(lattice, found.path).holds
-    return Run(found.cost, asked, seconds, holds), asked - before
+    colony = PostureColony(lattice, grid, settings, np.random.default_rng(seed))
+    found = colony.search(monitor)
+    seconds, total = time.process_time() - begin, int(queries[0])
+    holds = prove_path(lattice, found.path).holds
+    return Run(found.cost, total, seconds, holds), total - by_ants[-1]
 
 
 def compared(problem: fp.Problem, seeds: int) -> dict[str, list[Run]]:
     """Every search on one problem."""
     lattice = PostureLattice(problem)
-    _ = (
-        lattice.step_rotations,
-        lattice.frames,
-        lattice.allowed,
-        lattice.squared_steps,
-    )  # common to all
+    _ = lattice.step_rotations, lattice.frames, lattice.allowed, lattice.squared_steps  # shared
     runs: dict[str, list[Run]] = {
         f"programme, {bins} bins": [programme(lattice, lambda b=bins: cheapest_way(lattice, b))]
         for bins in (41, BINS, FINEST)
@@ -156,24 +140,25 @@ def compared(problem: fp.Problem, seeds: int) -> dict[str, list[Run]]:
     ]
     budget = runs[f"programme, {BINS} bins"][0].queries
     for seed in range(seeds):
-        for name, planner in NAMES.items():
-            shipped, annealing = colony(lattice, planner, seed)
+        for name, settings in NAMES.items():
+            shipped, annealing = colony_run(lattice, settings, seed)
             runs.setdefault(f"{name}, as shipped", []).append(shipped)
             left = max(0.05 * budget, budget - (shipped.queries - annealing))
-            shifts = round(colony._ANNEALING * left / annealing)
-            run, _ = colony(lattice, planner, seed, _ANNEALING=shifts)
+            per_layer = settings.shifts_per_layer(problem.reach_attitude)
+            shifts = round(per_layer * left / annealing)
+            run, _ = colony_run(lattice, replace(settings, annealing_shifts=shifts), seed)
             runs.setdefault(name, []).append(run)
         for name, settings in {
             "ants, pheromone, no annealing": WALKING,
-            "ants, pheromone, no shifts at all": {**WALKING, "_SHIFTS": 0},
+            "ants, pheromone, no shifts at all": replace(WALKING, descent_shifts=0),
         }.items():
-            run, _ = colony(lattice, ENDLESS, seed, budget, **settings)
+            run, _ = colony_run(lattice, settings, seed, budget)
             runs.setdefault(name, []).append(run)
     return runs
 
 
 def row(name: str, runs: Sequence[Run], best: Sequence[float]) -> list[str]:
-    """How one search did; `best` is the programme's least cost for each run."""
+    """A line of the table; `best` is the programme's least cost for each run."""
     found = [(r.cost / least - 1.0) for r, least in zip(runs, best, strict=True) if r.cost < np.inf]
     return [
         name,
@@ -196,7 +181,7 @@ HEADER = (
 
 
 def section(name: str, every: Sequence[dict[str, list[Run]]]) -> str:
-    """A table for one scenario: programmes and equal budgets first, as shipped behind."""
+    """A table for one scenario: programmes and equal budgets first, then as shipped."""
     names = sorted(every[0], key=lambda n: n.endswith("as shipped"))
     rows = []
     for search in names:
@@ -206,7 +191,7 @@ def section(name: str, every: Sequence[dict[str, list[Run]]]) -> str:
 
 
 def verdict(every: Iterable[dict[str, list[Run]]]) -> str:
-    """How often the whole colony ended where, at equal queries and as shipped."""
+    """Share of runs below, at and above the programme, at equal queries and as shipped."""
     every, parts = list(every), []
     for when, suffix in (("At equal queries", ""), ("As shipped", ", as shipped")):
         name = "ants, pheromone, annealing" + suffix
@@ -231,7 +216,7 @@ def verdict(every: Iterable[dict[str, list[Run]]]) -> str:
 
 
 def in_space(every: Iterable[dict[str, list[Run]]]) -> str:
-    """What a programme over bins of the same width would need for a turn in space."""
+    """States, memory and time of a programme with bins of the same width in three dimensions."""
     planar = [of[f"programme, {BINS} bins"][0] for of in every]
     states, width = float(np.mean([r.queries for r in planar])), 2.0 * REACHABLE / BINS
     rate = states / float(np.mean([r.seconds for r in planar]))
@@ -242,32 +227,35 @@ def in_space(every: Iterable[dict[str, list[Run]]]) -> str:
     needed = nodes * bins
     return (
         "## In space, computed and not run\n\n"
-        f"The robot of tests/helpers/spatial_robot.py step_rotations by 10 degrees on the spot: {lattice.size} postures "
-        f"of three axes on each of {len(lattice.joint_values)} layers, {nodes} nodes between the "
-        f"ends in which no links touch, {steps} steps from each. Rotations by up to "
-        f"r = {math.degrees(REACHABLE):.0f} degrees fill a volume of 8 pi (r - sin r), which is "
-        f"{bins:,.0f} bins of {math.degrees(width):.2f} degrees instead of {BINS}. That makes "
+        "The robot of tests/helpers/spatial_robot.py turns by 10 degrees on the spot: "
+        f"{lattice.size} postures of three axes on each of {len(lattice.joint_values)} layers, "
+        f"{nodes} nodes between the ends in which no links touch, {steps} steps from each. "
+        f"Rotations by up to r = {math.degrees(REACHABLE):.0f} degrees fill a volume of "
+        f"8 pi (r - sin r), which is {bins:,.0f} bins of {math.degrees(width):.2f} degrees "
+        f"instead of {BINS}. That makes "
         f"{needed:.1e} states and {needed * steps:.1e} steps; to remember where each state came "
         f"from takes {needed * 8 / 1e9:,.0f} GB at eight bytes, and at the planar programme's "
         f"{rate / 1e6:.1f} million states a second it would run for {needed / rate / 3600:.1f} "
         f"hours. Held to as many states as in the plane, {states / 1e6:.1f} million, its bins "
         f"would be {math.degrees((ball * nodes / states) ** (1 / 3)):.0f} degrees wide. The "
         "colony's cost does not depend on bins: [turning.md](turning.md) has its times for such "
-        "step_rotations."
+        "turns."
     )
 
 
 def compile_all() -> None:
-    """Compile everything, and see that the count counts."""
-    count_queries()
+    """Compile all kernels and check the counter of queries."""
     lattice = PostureLattice(variation("gate", 0))
     cheapest_way(lattice, 3)
-    colony(lattice, ANNEALED, 0)
+    colony_run(lattice, ANNEALED, 0)
     grid = posture_grid(lattice)
+    colony = PostureColony(lattice, grid, ANTS, np.random.default_rng(0))
     straight = np.tile(grid.origin, (len(lattice.joint_values), 1))
-    colony.cost_of(grid, straight)
-    if queries(grid) != len(lattice.joint_values) - 1:
-        raise RuntimeError(f"{queries(grid)} queries counted along a path, not one for each edge")
+    before = int(grid.queries[0])
+    colony.cost(straight)
+    counted = int(grid.queries[0]) - before
+    if counted != len(lattice.joint_values) - 1:
+        raise RuntimeError(f"{counted} queries counted along a path, not one for each edge")
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -289,11 +277,11 @@ def main(argv: Sequence[str] | None = None) -> None:
     every = [of for parts in results.values() for of in parts]
     parts = [
         "# A dynamic programme over attitude bins",
-        f"`python -m benchmarks.studies.attitude.attitude_programme --variations {args.variations} --seeds "
-        f"{args.seeds}`",
+        "`python -m benchmarks.studies.attitude.attitude_programme "
+        f"--variations {args.variations} --seeds {args.seeds}`",
         INTRODUCTION,
         *(section(name, of) for name, of in results.items()),
-        "## Who wins what",
+        "## Comparison",
         verdict(every),
         VERDICT,
         in_space(every),

@@ -1,14 +1,14 @@
-"""Plans made as if the attitude were held, flown by a base that reacts: how many collide.
+"""Collisions of plans that assume a held attitude, on a robot whose base reacts.
 
     python -m benchmarks.studies.attitude.base_reaction
 
-Random scenes (`scenes.py`) are planned with the attitude held, and the very same base path and arm
-motion is then flown with the base reacting, for several base masses; beside it the same scenes
-planned with reaction. Writes docs/benchmarks/base_reaction.md and base_reaction.png. It takes
-about ten minutes.
+Random scenes (`benchmarks/random_scenes.py`) are planned with the attitude held. The same base path
+and arm motion is then flown with the base reacting, for several base masses, and compared with
+plans of the same scenes made with reaction. Writes docs/benchmarks/base_reaction.md and
+base_reaction.png. It takes about ten minutes.
 
-A base of another mass is that of the paper's robot with mass and moments of inertia scaled alike,
-in the `<inertial>` of the URDF's root link. Its shape and the arms stay.
+A base of another mass is the base of the paper's robot with its mass and moments of inertia scaled
+by one factor, in the `<inertial>` of the URDF's root link. Its shape and the arms do not change.
 """
 
 import argparse
@@ -34,25 +34,31 @@ from ffsr_plan.robots.robot import robot_from_urdf
 MASSES = (5.0, 20.0, 100.0, 500.0, 2000.0)
 DELTAS = (0.0, 0.001, 0.1, 2.0)
 PLANNER = fp.LatticeOptimum()
-DEEP = 0.01  # [m], of a penetration that no calibration would explain away
+DEEP = 0.01  # [m] a penetration deeper than any calibration error
 COLOURS = ("#d95f02", "#7a5fa8", "#2a7f9e", "#3b4252")
 REACTING = "#2f8f4e"
 
 
 class Flight(NamedTuple):
-    """A plan made as if the attitude were held, flown by a base that reacts."""
+    """A plan that assumes a held attitude, flown by a base that reacts.
+
+    Attributes:
+        seed: seed of the scene.
+        delta: weight of clearances in F.
+        mass: of the base [kg].
+        least: least distance of a link to an obstacle [m], in closed form at all samples.
+        proven: whether every edge of the flown motion is proven free.
+        rival: least distance [m] of the plan made with reaction, same scene and base.
+        verified: whether that plan passes `verify()`.
+    """
 
     seed: int
     delta: float
     mass: float
     least: float
-    """Least distance of a link to an obstacle [m], in closed form at all samples."""
     proven: bool
-    """Whether every edge of the flown motion is proven free."""
     rival: float
-    """The least distance of the plan made with reaction for the same scene and base [m]."""
     verified: bool
-    """Whether that plan passes `verify()`."""
 
 
 def with_base(robot: fp.SpaceRobot, mass: float) -> fp.SpaceRobot:
@@ -85,7 +91,7 @@ def turns(robot: fp.SpaceRobot, problem: fp.Problem) -> float:
 
 
 def proven(plan: fp.Plan) -> bool:
-    """Whether every edge is proven free. Links among each other do not see the base turn."""
+    """Whether every edge is proven free. Distances between links do not depend on the attitude."""
     motion = plan.motion
     prover = Prover(motion, plan.problem.scene, plan.problem.tolerance)
     still = np.zeros(3)
@@ -107,10 +113,10 @@ def planned(seed: int, robots: Iterable[fp.SpaceRobot]) -> Iterator[tuple[fp.Pla
 def measure(
     scenes: int, first_seed: int, samples: int
 ) -> tuple[list[Flight], dict[type[fp.PlanningError], int]]:
-    """The flights of the first scenes with a path in both modes, and why others were passed over.
+    """The flights of the first scenes with a path in both modes, and why others were skipped.
 
-    A scene counts if there is a path with the attitude held and with reaction for
-    every base mass: then no collision is owed to a goal or a passage that nothing could reach.
+    A scene counts if it has a path with the attitude held and with reaction for every base mass.
+    Then no collision is caused by a goal or a passage that cannot be reached.
     """
     ends = random_problem(first_seed, 0.0)
     robots = {mass: with_base(ends.robot, mass) for mass in MASSES}
@@ -142,7 +148,7 @@ def measure(
 
 
 def draw(flights: list[Flight], angles: dict[float, float], scenes: int, out: Path) -> None:
-    """Left how many collide, right how deep (bars: medians), both by base mass."""
+    """Left the number of collisions, right their depth (bars: medians), both by base mass."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 3.9), layout="constrained")
     places = np.arange(len(MASSES))
     for k, (delta, colour) in enumerate(zip(DELTAS, COLOURS, strict=True)):
@@ -202,11 +208,11 @@ TEXT = """# Planned as if the attitude were held, flown with a base that reacts
 
 `{command}`
 
-{scenes} random scenes (`benchmarks/random_scenes.py`, seeds from {first}), the exact lattice optimum,
-refined. Each is planned with the attitude held, start and goal attitude equal, and proven free in
-that mode. Then the very same base path and arm motion is flown with the base reacting. Beside it
-stand plans of the same scenes made with reaction. Colliding plans are counted out of {scenes} for
-each delta and base mass; in brackets those that collide by {deep:g} mm or more.
+{scenes} random scenes (`benchmarks/random_scenes.py`, seeds from {first}), the exact lattice
+optimum, refined. Each is planned with the attitude held, start and goal attitude equal, and proven
+free in that mode. Then the same base path and arm motion is flown with the base reacting. The last
+columns show plans of the same scenes made with reaction. The table counts colliding plans out of
+{scenes} for each delta and base mass, in brackets those that collide by {deep:g} mm or more.
 
 {results}
 
@@ -217,25 +223,27 @@ each delta and base mass; in brackets those that collide by {deep:g} mm or more.
   pass all its checks, momentum included. The flown motions were certified too, edge by edge:
   {proofs}.
 - The depth is how far a link would have to be moved to come free.
-- The arms' motion is that of `scenarios/fig2a.toml` in all scenes, and it alone decides how far the
-  base turns: on every path alike. A plan with the attitude held does not depend on masses, so it is
-  one and the same for all bases.
+- The arms' motion is that of `scenarios/fig2a.toml` in all scenes. It alone determines how far the
+  base turns, the same on every path. A plan with the attitude held does not depend on masses, so
+  there is one plan for all bases.
 - The base is that of the paper's robot, 5 kg; for the others its mass and its moments of inertia
-  are multiplied by one factor in the URDF. Its shape and the arms, 2.2 kg in all, stay. What counts
-  is the ratio: 20 kg stand for a satellite whose arms weigh a tenth of it.
-- A scene counts if there is a path with the attitude held and with reaction for every base mass,
-  the goal being judged at the attitude really reached. So no collision counted here was forced on
-  the planner by its goal or by a closed passage. Passed over on the way: {refused}.
-- The closer a plan hugs the obstacles, the less it takes. At delta = 0 it keeps no more distance
-  than the steps of its lattice leave it, and a turn by a degree is enough for most. Where there is
-  room and delta asks for it, distance hides the error; it does not remove it. A large delta is no
-  remedy: F looks at clearances at the nodes, and such a path may graze obstacles between them.
+  are multiplied by one factor in the URDF. Its shape and the arms (2.2 kg in all) do not change.
+  Only the ratio matters: 20 kg corresponds to a satellite whose arms have a tenth of its mass.
+- A scene counts if it has a path with the attitude held and with reaction for every base mass,
+  where the goal is checked at the attitude that is reached. So no collision counted here is caused
+  by the goal or by a closed passage. Skipped: {refused}.
+- Plans with little clearance collide at small rotations. At delta = 0 the lattice spacing alone
+  determines the clearance, and for most plans one degree suffices. With clearance in the cost fewer
+  plans collide, because the clearance exceeds the error. A large delta does not prevent collisions:
+  F depends on clearances at the nodes only, and such a path may pass close to obstacles between
+  them.
 """
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--scenes", type=int, default=40, help="with a path in both modes")
+    parser.add_argument("--scenes", type=int, default=40, help="scenes with a path in both modes")
     parser.add_argument("--samples", type=int, default=500, help="distance checks per edge")
     parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help="of the scenes")
     parser.add_argument("--out", type=Path, default=RESULTS, help="directory")

@@ -1,9 +1,10 @@
-"""Gates that only stowed arms pass, varied by seed, with a goal attitude to be reached on the way.
+"""Planning through gates that only stowed arms pass, with a goal attitude, varied by seed.
 
     python -m benchmarks.studies.attitude.gates
 
 Each variation moves the gates, their openings and the size of their spheres a little, and draws the
-goal's yaw from -10 to 10 degrees. Plans are verified; times are of one plan, kernels compiled.
+goal's yaw from -10 to 10 degrees. Plans are verified. Times are those of
+one plan, without compiling.
 """
 
 import argparse
@@ -47,6 +48,7 @@ def passable(problem: fp.Problem) -> bool:
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--variations", type=int, default=10)
     parser.add_argument("--seeds", type=int, default=3)
@@ -83,9 +85,10 @@ def main() -> None:
         "gap to the lower bound, median", "time, median", "longest",
     ]  # fmt: skip
     publish(
-        f"# Gates\n\n`python -m benchmarks.studies.attitude.gates --variations {args.variations} --seeds "
-        f"{args.seeds}`\n\nVariations of the scenarios `gate` and `double_gate`, goal yaw from -10 "
-        "to 10 degrees. That there is no path\nwithout posture axes is proven by `LatticeOptimum`."
+        f"# Gates\n\n`python -m benchmarks.studies.attitude.gates --variations {args.variations} "
+        f"--seeds {args.seeds}`\n\nVariations of the scenarios `gate` and `double_gate`, goal yaw "
+        "from -10 "
+        "to 10 degrees. `LatticeOptimum` proves that there is no path\nwithout posture axes."
         "\n\n" + table(header, rows) + "\n",
         args.out,
     )

@@ -1,11 +1,12 @@
-"""Turning by arm motion alone: how exactly, how far above the least joint path, how fast.
+"""Attitude manoeuvres by arm motion alone: error, length above the optimum, time.
 
     python -m benchmarks.studies.attitude.turning
 
-The planar dual-arm robot step_rotations its base by 5 to 75 degrees, either way, and ends in the posture it
-began with; lengths are held against the dynamic programme of tests/helpers/turning_programme.py. A robot with two arms
-of three joints (tests/helpers/spatial_robot.py) step_rotations about five axes. Last, the parts of the search against each
-other. Writes docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
+The planar dual-arm robot turns its base by 5 to 75 degrees, either way, and ends in the posture it
+began with; lengths are compared with the dynamic programme of tests/helpers/turning_programme.py.
+A robot with two arms of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last,
+the parts of the search are compared with each other. Writes
+docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
 """
 
 import argparse
@@ -22,7 +23,6 @@ import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, publish, table
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.search.postures import colony
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from tests.helpers.spatial_robot import spatial_problem
 from tests.helpers.turning_programme import turning_oracle
@@ -41,43 +41,47 @@ SPATIAL = ((10, 60, 4, 0.3), (30, 60, 4, 0.3), (45, 80, 4, 0.4), (60, 80, 4, 0.4
 
 
 class Turn(NamedTuple):
-    """One plan."""
+    """One plan.
+
+    Attributes:
+        before: attitude error before the correction [deg].
+        after: attitude error after the correction [deg].
+        lattice: L of the lattice path [m].
+        final: L after the correction [m].
+        seconds: time of the plan.
+    """
 
     before: float
-    """Error before the correction [deg]."""
     after: float
-    """And behind it [deg]."""
     lattice: float
-    """L of the lattice path [m]."""
     final: float
-    """L behind the correction [m]."""
     seconds: float
 
 
 def planar(degrees: float) -> fp.Problem:
-    """Turn by so much and come back to the same posture."""
+    """The planar robot turns by `degrees` and returns to the same posture."""
     robot = fp.load_robot("planar_dual_arm")
     start = robot.configuration(joints=REST)
     goal = robot.configuration((0, 0, 0), (math.radians(degrees), 0, 0), REST)
     return fp.Problem(robot, fp.Scene(), start, goal, lattice=LATTICE, reach_attitude=True)
 
 
-def turn(problem: fp.Problem, seed: int, planner: fp.MaxMinAntSystem | None = None) -> Turn | None:
-    """Plan; None where the goal was not reached."""
+def turn(problem: fp.Problem, seed: int, planner: fp.PostureAnnealing | None = None) -> Turn | None:
+    """Plan; None if the goal attitude was not reached."""
     try:
         plan = fp.plan(problem, planner, seed)
     except fp.AttitudeOutOfReach:
         return None
     error = plan.arrival_attitude_error
     if error is None or not np.isfinite(error):
-        raise RuntimeError("a plan without the attitude that was asked for")
+        raise RuntimeError("a plan that does not reach the goal attitude")
     return Turn(
         _before(plan), math.degrees(error), plan.lattice_objective, plan.objective, plan.seconds
     )
 
 
 def _before(plan: fp.Plan) -> float:
-    """Attitude error of the lattice path that the plan's nodes name [deg]."""
+    """Attitude error of the lattice path through the plan's nodes [deg]."""
     lattice, problem = PostureLattice(plan.problem), plan.problem
     number = {tuple(index): p for p, index in enumerate(lattice.indices.tolist())}
     nodes = [number[tuple(node)] for node in plan.nodes.tolist()]
@@ -88,19 +92,19 @@ def _before(plan: fp.Plan) -> float:
 
 
 def planar_table(angles: Iterable[int], seeds: int) -> str:
-    """How the planar robot step_rotations, either way."""
+    """Results of the planar robot, either direction."""
     oracle = turning_oracle(planar(10), math.radians(0.1))
     rows, every, missed = [], [], 0
     for size in angles:
         for degrees in (size, -size):
             tries = [turn(planar(degrees), seed) for seed in range(seeds)]
-            step_rotations = [t for t in tries if t is not None]
-            missed += seeds - len(step_rotations)
+            turns = [t for t in tries if t is not None]
+            missed += seeds - len(turns)
             least = oracle.least(math.radians(degrees))
-            excess = [t.lattice / least - 1.0 for t in step_rotations]
+            excess = [t.lattice / least - 1.0 for t in turns]
             every += excess
-            if step_rotations:
-                rows.append(_row(f"{degrees:+d}", step_rotations, seeds, least, excess))
+            if turns:
+                rows.append(_row(f"{degrees:+d}", turns, seeds, least, excess))
             print(f"{degrees:+d} degrees", file=sys.stderr, flush=True)
     head = ("degrees", "reached", "error before [deg]", "after", "oracle L [m]")
     more = ("L above it, median", "worst", "L corrected [m]", "seconds")
@@ -113,51 +117,49 @@ def planar_table(angles: Iterable[int], seeds: int) -> str:
 
 
 def _row(
-    name: str, step_rotations: Sequence[Turn], seeds: int, least: float, excess: Sequence[float]
+    name: str, turns: Sequence[Turn], seeds: int, least: float, excess: Sequence[float]
 ) -> tuple[str, ...]:
     return (
         name,
-        f"{len(step_rotations)} of {seeds}",
-        f"{max(t.before for t in step_rotations):.2f}",
-        f"{max(t.after for t in step_rotations):.0e}",
+        f"{len(turns)} of {seeds}",
+        f"{max(t.before for t in turns):.2f}",
+        f"{max(t.after for t in turns):.0e}",
         f"{least:.2f}",
         f"{np.median(excess):.1%}",
         f"{max(excess):.1%}",
-        f"{np.median([t.final for t in step_rotations]):.2f}",
-        f"{np.median([t.seconds for t in step_rotations]):.1f}",
+        f"{np.median([t.final for t in turns]):.2f}",
+        f"{np.median([t.seconds for t in turns]):.1f}",
     )
 
 
 def spatial_table(settings: Iterable[tuple[int, int, int, float]], seeds: int) -> str:
-    """How the robot with three posture axes step_rotations about five axes."""
+    """Results of the robot with three posture axes, about five axes."""
     rows = []
     for degrees, divisions, levels, spacing in settings:
         for name, axis in AXES.items():
             problem = spatial_problem(degrees, axis, divisions, levels, spacing)
-            step_rotations = [t for seed in range(seeds) if (t := turn(problem, seed)) is not None]
+            turns = [t for seed in range(seeds) if (t := turn(problem, seed)) is not None]
             figures = (
                 (
-                    f"{max(t.before for t in step_rotations):.2f}",
-                    f"{max(t.after for t in step_rotations):.0e}",
-                    f"{np.median([t.lattice for t in step_rotations]):.2f}",
-                    f"{np.median([t.seconds for t in step_rotations]):.1f}",
+                    f"{max(t.before for t in turns):.2f}",
+                    f"{max(t.after for t in turns):.0e}",
+                    f"{np.median([t.lattice for t in turns]):.2f}",
+                    f"{np.median([t.seconds for t in turns]):.1f}",
                 )
-                if step_rotations
+                if turns
                 else ("", "", "", "")
             )
             lattice = f"{divisions} x {2 * levels + 1}^3 of {spacing:g}"
-            rows.append(
-                (f"{degrees}, {name}", lattice, f"{len(step_rotations)} of {seeds}", *figures)
-            )
+            rows.append((f"{degrees}, {name}", lattice, f"{len(turns)} of {seeds}", *figures))
             print(f"{degrees} degrees about {name}", file=sys.stderr, flush=True)
     head = ("degrees, axis", "lattice", "reached", "error before [deg]", "after", "L [m]", "s")
     return table(head, rows)
 
 
 def parts_table(angles: Sequence[int], seeds: int) -> str:
-    """The default, without pheromone, and without ants."""
+    """Results of the default search, without pheromone, and without ants."""
     oracle = turning_oracle(planar(10), math.radians(0.1))
-    colony = fp.MaxMinAntSystem
+    colony = fp.PostureAnnealing
     planners = {
         "ants, pheromone, annealing": colony(),
         "ants without pheromone, annealing": colony(pheromone=False),
@@ -196,13 +198,14 @@ def main(argv: Sequence[str] | None = None) -> None:
     begin = time.perf_counter()
     turn(planar(10), 0)  # compiles
     given = " ".join(sys.argv[1:] if argv is None else argv)
-    shifts = len(colony._HEATS) * colony._ANNEALING
+    default = fp.PostureAnnealing()
+    shifts = len(default.temperatures) * default.shifts_per_layer(reach_attitude=True)
     parts = [
         "# Turning by arm motion alone",
         f"`python -m benchmarks.studies.attitude.turning {given}".rstrip()
-        + "`, times on a machine that did other work.",
-        "Errors are the largest over all seeds. The oracle is the least joint path that ends "
-        "within half a degree of the goal, up to which the search counts an error as none.",
+        + "`, times on a machine under other load.",
+        "Errors are the largest over all seeds. The oracle is the shortest joint path that ends "
+        "within half a degree of the goal; the search does not penalise smaller errors.",
         f"## Planar, {options.seeds} seeds",
         planar_table(options.angles, options.seeds),
         f"## Three posture axes, {options.spatial_seeds} seeds",
@@ -210,7 +213,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     ]
     if options.parts_seeds:
         parts += [
-            "## What the ants contribute",
+            "## Contribution of the ants",
             f"30, 60 and 75 degrees, {options.parts_seeds} seeds other than above. Annealing tries "
             f"{shifts} paths for each layer in every row; a cycle of ants tries 30 paths and 200 "
             "shifts more.",

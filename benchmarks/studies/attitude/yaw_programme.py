@@ -1,17 +1,17 @@
-"""A dynamic programme over base offsets, postures and yaw: the colony's rival in the plane.
+"""A dynamic programme over base offsets, postures and yaw, for planar robots.
 
-States are (layer, base offset, posture, yaw bin). Steps and nodes cost what they cost the colony,
-by the same functions; a collision is forbidden here. As in `oracle`, each state keeps the true yaw
-of its cheapest way, so that rounding does not add up over the layers, and its clearance is asked
-for at that yaw: one distance query for each state that a way leads to.
+States are (layer, base offset, posture, yaw bin). Steps and nodes have the costs of the colony, by
+the same functions; a collision is forbidden here. As in `tests/helpers/turning_programme.py`, each
+state keeps the true yaw of its cheapest path, so that rounding does not add up over the layers, and
+its clearance is computed at that yaw: one distance query for each state that is reached.
 
-In what sense it is exact: its value is the cost of the path that it returns. That is no less than
-the optimum of the lattice, and may be above it, as of two ways into one bin only the cheaper one
-lives on, although the other's yaw, less than a bin away, might have been worth more in the end.
+The value is the cost of the path that is returned. It is no less than the optimum of the lattice
+and may exceed it: of two paths into one bin only the cheaper one is kept, although the other,
+whose yaw differs by less than a bin, may cost less at the goal.
 
-States are dropped from which the goal would cost more than a path that is already known: a coarser
-run's. What is still to come is bounded from below by the cost to go of the base origin alone, which
-lies inside the robot at any attitude.
+States are dropped if the goal costs more from there than a known path, that of a coarser run. The
+remaining cost is bounded from below by the cost to go of the base origin alone, which lies inside
+the robot at any attitude.
 """
 
 import math
@@ -42,25 +42,31 @@ ATTITUDE_WEIGHT = AnnealingSettings().attitude_weights[1]  # [m] of cost a radia
 
 
 class Way(NamedTuple):
-    """What the programme found."""
+    """Result of the programme.
+
+    Attributes:
+        path: (m + 1, 2) base offset and posture on each layer of the cheapest path.
+        cost: of the path [m]; infinite if there is none.
+        queries: number of distances from the robot to the obstacles.
+    """
 
     path: np.ndarray
-    """(m + 1, 2) base offset and posture on each layer of the cheapest way."""
     cost: float
-    """[m]; infinite where no way leads to the goal."""
     queries: int
-    """Distances from the robot to the obstacles that were asked for."""
 
 
 def cheapest_way(lattice, bins, reach=REACHABLE, ceiling=np.inf, grid=None):
-    """The cheapest way from start to goal with the yaw in bins.
+    """The cheapest path from start to goal with the yaw in bins.
 
     Args:
-        lattice: of a robot that step_rotations in its plane.
+        lattice: of a robot that rotates in its plane.
         bins: an odd number.
-        reach: the bins share the yaws from -reach to reach [rad]; ways beyond are given up.
-        ceiling: cost of a path that is known [m]; only ways no dearer are found.
-        grid: as of `posture_grid`, if there is one already.
+        reach: the bins divide the yaws from -reach to reach [rad]; paths beyond are dropped.
+        ceiling: cost of a known path [m]; only paths that cost no more are returned.
+        grid: the result of `posture_grid`, if it exists already.
+
+    Returns:
+        The cheapest path, its cost and the number of queries.
     """
     grid = posture_grid(lattice) if grid is None else grid
     step_rotations = grid.step_rotations
@@ -70,15 +76,16 @@ def cheapest_way(lattice, bins, reach=REACHABLE, ceiling=np.inf, grid=None):
     m, count, offsets = len(step_rotations), len(grid.successors), len(grid.across)
     before = np.full((m + 1, count, bins, offsets), -1, dtype=np.int32)
     path = np.empty((m + 1, 2), dtype=np.int64)
+    yaw_steps = 2.0 * np.arctan2(step_rotations[..., 2], step_rotations[..., 3])
+    width = 2.0 * reach / bins
     cost, queries = _programme(
-        grid, 2.0 * np.arctan2(step_rotations[..., 2], step_rotations[..., 3]), ahead, 2.0 * reach / bins,
-        ATTITUDE_WEIGHT, ceiling + 1e-9, before, path,
-    )  # fmt: skip
+        grid, yaw_steps, ahead, width, ATTITUDE_WEIGHT, ceiling + 1e-9, before, path
+    )
     return Way(path, cost, queries)
 
 
 def coarse_to_fine(lattice, bins, reach=REACHABLE, grid=None):
-    """The same, each number of `bins` below the cost that the ones before it came to."""
+    """The same with each number of `bins` in turn, bounded by the least cost so far."""
     best, queries = Way(np.empty((0, 2)), np.inf, 0), 0
     for number in bins:
         way = cheapest_way(lattice, number, reach, best.cost, grid)
@@ -88,7 +95,7 @@ def coarse_to_fine(lattice, bins, reach=REACHABLE, grid=None):
 
 
 def least_to_go(lattice, grid):
-    """(m + 1, b, n) cost [m] that no way from a node to the goal falls below, at any attitude."""
+    """(m + 1, b, n) lower bound on the cost [m] from a node to the goal, at any attitude."""
     point = np.zeros((*grid.frames.shape[:2], 1, 15))
     point[..., [0, 4, 8]] = 1.0
     inside = origin_is_inside(lattice)
@@ -102,7 +109,7 @@ def least_to_go(lattice, grid):
     return cost_to_go(shrunk, np.tile(grid.start, (len(point), 1)))
 
 
-@njit  # not kept on disk, where it would outlive changes of the colony's kernels
+@njit  # not cached on disk: the cache would not see changes of the colony's kernels
 def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
     m, count, bins, offsets = len(before) - 1, *before.shape[1:]
     steps, half = grid.successors.shape[1], bins // 2
@@ -185,5 +192,5 @@ def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
 
 @njit
 def _turned(grid, yaw, quat):
-    """Attitude of the base, turned in its plane by `yaw` since the start."""
+    """Write the attitude of a base rotated in its plane by `yaw` since the start to `quat`."""
     compose(grid.start, np.array([0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)]), quat)

@@ -1,9 +1,10 @@
-"""How fast the colonies come down to the exact lattice optimum: best F against time.
+"""Best F of the colonies against time, relative to the exact lattice optimum.
 
     python -m benchmarks.studies.planners.anytime
 
-stamps every cycle of the Ant System and of the default colony on four random scenes (`scenes.py`,
-delta = 2), and writes docs/benchmarks/anytime.md and anytime.png. It takes a few seconds.
+records the time of every cycle of the Ant System and of the default colony on four random scenes
+(`benchmarks/random_scenes.py`, delta = 2), and writes docs/benchmarks/anytime.md and anytime.png.
+It takes a few seconds.
 """
 
 import argparse
@@ -28,18 +29,23 @@ COLOURS = {"AntSystem": "tab:orange", "MaxMinAntSystem": "tab:blue"}
 
 
 class Descent(NamedTuple):
-    """One search: after each cycle CPU time [s] since it began, and gap of the best path."""
+    """One search.
+
+    Attributes:
+        times: CPU time [s] since the search began, after each cycle.
+        gaps: gap of the best path after each cycle.
+    """
 
     times: np.ndarray
     gaps: np.ndarray
 
     def seconds_to(self, gap: float) -> float:
-        """When the gap was first this small; infinite if never."""
+        """Time [s] at which the gap was first this small; infinite if never."""
         return float(np.min(self.times, where=self.gaps <= gap, initial=np.inf))
 
 
 def descend(planner: fp.AntSystem | fp.MaxMinAntSystem, case: Case, seed: int) -> Descent:
-    """Run one search with stamps."""
+    """Run one search and record the time of every cycle."""
     roadmap, stamps = fp.Roadmap(case.roadmap.problem), []
     begin = time.process_time()
     watch = SearchMonitor(
@@ -51,7 +57,7 @@ def descend(planner: fp.AntSystem | fp.MaxMinAntSystem, case: Case, seed: int) -
 
 
 def optimum_seconds(case: Case) -> float:
-    """Median time of the exact optimum on the same roadmap."""
+    """Median CPU time [s] of the exact optimum on the same roadmap."""
     times = []
     for _ in range(7):
         roadmap, begin = fp.Roadmap(case.roadmap.problem), time.process_time()
@@ -89,6 +95,7 @@ def cell(descents: list[Descent], gap: float) -> str:
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--runs", type=int, default=5, help="seeds for each scene")
     parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help="of the scenes")
@@ -133,13 +140,15 @@ def main() -> None:
     ]
     publish(
         "# Best F against time\n\n"
-        f"    python -m benchmarks.studies.planners.anytime --runs {args.runs} --first-seed {args.first_seed}\n\n"
+        f"    python -m benchmarks.studies.planners.anytime --runs {args.runs} "
+        f"--first-seed {args.first_seed}\n\n"
         f"Median CPU time [ms] over {args.runs} seeds until the best path is within 10, 1 and "
         f"0.1 % of the exact lattice optimum; random scenes, delta = {DELTA:g}, 41 x 41 "
-        "nodes. Nodes are evaluated and edges proven on the way, in that time; stamping each cycle "
-        "costs a little itself. In brackets: how many runs got there, if some did not.\n\n"
+        "nodes. The times include the evaluation of nodes, the proofs of edges, and the recording "
+        "of "
+        "each cycle. In brackets the number of runs that reached the gap, if some did not.\n\n"
         f"{table(header, rows)}\n\n![best F against time](anytime.png)\n\n"
-        "A line begins with the first cycle, at the bar, and ends with the search, at the dot.\n",
+        "A line begins at the end of the first cycle (bar) and ends with the search (dot).\n",
         args.out / "anytime.md",
     )
 

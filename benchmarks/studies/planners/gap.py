@@ -1,9 +1,10 @@
-"""How far above the exact lattice optimum the colonies stay, and which of their parts matters.
+"""Gap of the colonies to the exact lattice optimum, and an ablation of their parts.
 
     python -m benchmarks.studies.planners.gap --scenes 60 --runs 5
 
-runs the Ant System, the default colony and its ablations on random scenes (`scenes.py`) for four
-deltas, refinement off, and writes docs/benchmarks/gap.md. It takes about six minutes.
+runs the Ant System, the default colony and its ablations on random scenes
+(`benchmarks/random_scenes.py`) for four deltas, refinement off, and writes docs/benchmarks/gap.md.
+It takes about six minutes.
 """
 
 import argparse
@@ -25,7 +26,7 @@ PARTS = {
     "restarts": {"patience": 0},
     "pheromone": {"pheromone": False},
 }
-"""The parts of the default colony, and the settings that take them away."""
+"""The parts of the default colony, and the settings that disable them."""
 NEITHER = "without local search and pheromone"
 PLANNERS = {
     "AntSystem": fp.AntSystem(),
@@ -36,13 +37,17 @@ PLANNERS = {
 
 
 class Runs(NamedTuple):
-    """What a planner did, run by run; all planners in the same order."""
+    """All runs of a planner, in the same order for all planners.
+
+    Attributes:
+        gaps: gap of each run; infinite without a path.
+        seconds: CPU time [s].
+        cycles: cycles until the best path was within 0.1 % of the optimum; infinite if never.
+    """
 
     gaps: np.ndarray
-    """Infinite where the planner found no path."""
     seconds: np.ndarray
     cycles: np.ndarray
-    """Until the best path was within 0.1 % of the optimum; infinite if it never was."""
 
     @property
     def above(self) -> float:
@@ -51,7 +56,7 @@ class Runs(NamedTuple):
 
 
 def run(planner: fp.AntSystem | fp.MaxMinAntSystem, case: Case, seed: int) -> tuple[float, ...]:
-    """Gap, CPU seconds and cycles to 0.1 % of one search; infinite where there is none."""
+    """Gap, CPU seconds and cycles to 0.1 % of one search; infinite without a path."""
     roadmap = case.roadmap.without_edge_states()
     begin = time.process_time()
     try:
@@ -92,28 +97,29 @@ def row(name: str, runs: Runs) -> list[str]:
 
 
 def reading(runs: dict[str, Runs]) -> str:
-    """What the numbers say, in words that the numbers choose."""
+    """Summary of the table in sentences."""
     above = {part: runs[f"without {part}"].above for part in PARTS}
     first, *others = sorted(PARTS, key=lambda part: -above[part])
     listed = ", ".join(f"without {part} {100.0 * above[part]:.2f} %" for part in (first, *others))
     extra, next_extra = (max(0.0, above[p] - runs[FULL].above) for p in (first, others[0]))
     if extra < 0.01:
-        verdict = "None of the parts is missed when it alone goes"
+        verdict = "Removing any one part alone makes no difference"
     elif extra > 5.0 * next_extra:
-        verdict = f"It is the {first} that carries the result, far more than any other part"
+        verdict = f"The {first} matters most, far more than any other part"
     else:
-        verdict = f"The {first} carries most, the {others[0]} comes next"
+        verdict = f"The {first} matters most, followed by the {others[0]}"
     at_optimum = [part for part in PARTS if above[part] <= runs[FULL].above]
     if at_optimum:
         verdict += (
-            f". The end of the search does not tell what {' and '.join(at_optimum)} are worth: "
-            "these runs end no worse without; for their pace see the cycles"
+            f". Without {' or '.join(at_optimum)} the final gap is no worse; the difference is in "
+            "the "
+            "number of cycles"
         )
     bare, neither = runs["without local search"], runs[NEITHER]
     return (
-        f"**What carries the result.** Runs more than {100.0 * ENOUGH:g} % above the optimum: "
+        f"**Ablation.** Runs more than {100.0 * ENOUGH:g} % above the optimum: "
         f"{100.0 * runs[FULL].above:.2f} % with all parts; {listed}. {verdict}.\n\n"
-        "**What the pheromone contributes**, run by run on the same scene and seed. With local "
+        "**Contribution of the pheromone**, run by run on the same scene and seed. With local "
         f"search: {compare(runs[FULL], runs['without pheromone'])}. "
         f"Without local search: {compare(bare, neither)}; the median gap is "
         f"{100.0 * np.median(bare.gaps):.2f} % with pheromone, "
@@ -128,12 +134,14 @@ def compare(one: Runs, other: Runs) -> str:
     sooner, later = int(np.sum(one.cycles < other.cycles)), int(np.sum(one.cycles > other.cycles))
     verdict = "hardly any difference" if better + worse < 0.01 * len(change) else "a difference"
     return (
-        f"{verdict} in the end (of {len(change)} runs {better} are better with it, {worse} worse); "
-        f"{sooner} are sooner within {100.0 * ENOUGH:g} % with it, {later} later"
+        f"{verdict} in the final gap (of {len(change)} runs {better} are better with it, {worse} "
+        "worse); "
+        f"{sooner} reach {100.0 * ENOUGH:g} % in fewer cycles with it, {later} in more"
     )
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--scenes", type=int, default=60)
     parser.add_argument("--runs", type=int, default=5, help="seeds for each scene and delta")
@@ -148,10 +156,11 @@ def main() -> None:
         f"    python -m benchmarks.studies.planners.gap --scenes {args.scenes} --runs {args.runs} "
         f"--first-seed {args.first_seed}\n\n"
         f"{count} random scenes that have a path ({args.scenes - count} more have none, or an end "
-        f"that collides), delta in {', '.join(f'{d:g}' for d in DELTAS)}, {args.runs} seeds each, "
-        "41 x 41 nodes, no refinement. Gaps and shares in percent; gaps over the runs that found a "
-        "path, failures counted aside; the time is CPU time of the search alone, median over all "
-        "runs, with the proofs of its edges, on a roadmap that earlier searches have warmed.\n\n"
+        f"in collision), delta in {', '.join(f'{d:g}' for d in DELTAS)}, {args.runs} seeds each, "
+        "41 x 41 nodes, no refinement. Gaps and shares in percent; gaps are over the runs with a "
+        "path, "
+        "failures have their own column. The time is the median CPU time of the search with the "
+        "proofs of its edges, on a roadmap whose nodes earlier searches have evaluated.\n\n"
         f"{table(header, [row(*item) for item in runs.items()])}\n\n{reading(runs)}\n",
         args.out,
     )

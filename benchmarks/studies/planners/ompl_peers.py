@@ -1,9 +1,9 @@
-"""Side by side with OMPL's planners on random scenes: times, lengths, and collisions re-checked.
+"""Comparison with OMPL's planners on random scenes: times, lengths, verified collisions.
 
-`python -m benchmarks.studies.planners.ompl_peers` needs `pip install ompl==2.0.1`.
+    python -m benchmarks.studies.planners.ompl_peers
 
-Both sides plan in one plane, (metres along the way, metres aside), with the same whole-body
-configuration at every point of it and the same Coal query.
+needs `pip install ompl==2.0.1`. All planners work in one plane, (progress [m], lateral offset [m]),
+with the same whole-body configuration at every point and the same Coal query.
 """
 
 import argparse
@@ -34,7 +34,7 @@ SAME = 1e-3  # lengths closer than this, relative, count as equal
 
 
 class Plane:
-    """The plane of a problem: what OMPL may ask there, and the re-check in closed form."""
+    """The plane of a problem: OMPL's validity checker, and the check in closed form."""
 
     def __init__(self, problem):
         self.problem, axis = problem, problem.lattice.lateral
@@ -44,7 +44,7 @@ class Plane:
         self.window = axis.half_count * axis.spacing
         self.bodies = Bodies(problem.robot.urdf)
         self.query = ObstacleQuery(problem.robot, problem.scene)
-        # OMPL asks point by point: from a table, lest Python's share of a query slow it down
+        # OMPL queries one point at a time; a table keeps the time spent in Python small
         self.cells = 20_000
         points = np.linspace(0.0, self.along, self.cells + 1)
         self.table = self.configurations(np.column_stack([points, np.zeros_like(points)]))
@@ -94,7 +94,17 @@ class Plane:
 
 @dataclass
 class Run:
-    """What one planner had for one scene after some time; no path: `path` (N, 2) is None."""
+    """The path of one planner for one scene after some time; None if it has no path.
+
+    Attributes:
+        seed: seed of the scene.
+        planner: name of the planner.
+        resolution: OMPL's edge resolution, relative to the plane's diagonal; None if proven.
+        budget: time after which the planner was stopped [s], if it was.
+        seconds: processor time [s].
+        path: (N, 2) corners in the plane [m].
+        depth: deepest penetration along the path [m].
+    """
 
     seed: int
     planner: str
@@ -106,12 +116,12 @@ class Run:
 
     @property
     def length(self):
-        """Of the base's track [m]."""
+        """Length of the base's track [m]."""
         return float(np.linalg.norm(np.diff(self.path, axis=0), axis=1).sum())
 
     @property
     def clean(self):
-        """Whether there is a path, and the re-check met no collision on it."""
+        """Whether there is a path without a collision at any sample."""
         return self.path is not None and self.depth < 0.0
 
 
@@ -140,12 +150,12 @@ def solution(setup):
 
 
 def until(moment):
-    """Processor time, not the wall clock's, ends a run: it does not count what others compute."""
+    """End a run by its processor time, which other processes do not affect."""
     return ob.PlannerTerminationCondition(lambda: time.process_time() >= moment)
 
 
 def ompl_runs(plane, seed, seconds):
-    """RRTConnect, plain and simplified; then the optimising planners, stopped on the way."""
+    """RRTConnect, plain and simplified; then the optimising planners at several times."""
     for resolution in (DEFAULT, FINE):
         setup = ompl_setup(plane, "RRTConnect", resolution)
         begin = time.process_time()
@@ -218,7 +228,7 @@ def rows(runs):
 
 
 def sentences(runs):
-    """Who has a path where the other has none."""
+    """Scenes in which only one side has a path."""
     ours, theirs = {r.seed: r for r in runs if r.planner == OURS}, {}
     for run in sorted((r for r in runs if r.clean), key=lambda r: -r.length):
         if run.resolution == FINE:
@@ -233,31 +243,32 @@ def sentences(runs):
     spent = np.median([1e3 * r.seconds for r in refused] or [0.0])
     return f"""
 - OMPL has a free path (any planner at {FINE:g}, re-checked), `plan()` none: {len(only)} of
-  {len(ours)} scenes. OMPL's shortest goes back on its way in {turning} of them. A four times finer
-  lateral spacing opens {opened} of them to the lattice.
+  {len(ours)} scenes. OMPL's shortest path goes back in {turning} of them. With a four times
+  finer lateral spacing the lattice has a path in {opened} of them.
 - `plan()` has a path, OMPL no free one: {lost}. Neither has one: {len(refused) - len(only)}.
-- `plan()` found none {len(refused)} times, after {spent:.0f} ms (median). OMPL's planners search
-  until their time is up.
+- `plan()` found no path {len(refused)} times, after {spent:.0f} ms (median). OMPL's planners search
+  until their time limit.
 """
 
 
 NOTES = f"""
-How to read it:
+Notes:
 
-- One plane for all: progress along the straight way [m] and offset aside [m], within the lattice's
-  window; the same configuration at each point, reaction included, and the same Coal query.
-- Lengths are those of the base's track there. Ours minimise Eq. 6, where the joints' travel is part
-  of each step, and have corners on the layers only. The last two columns count scenes where
-  `plan()` has a path and this one is free of collisions; "shorter" and "longer" begin at
-  {100 * SAME:g} %.
-- Our paths are monotone in progress, one node a layer. OMPL's may go back, and so can find paths,
-  and shorter ones, that no such lattice holds.
-- Times: ours are those of `plan()` as a whole, proofs included; OMPL's those of `solve` (and of the
-  simplification where named) alone, with a validity checker in Python that looks the reaction up in
-  a table, whose making is not counted.
-- The edge resolution is OMPL's, relative to the plane's diagonal; {DEFAULT:g} is its default. A
-  collision is what distances in closed form find, every {1e3 * STEP:g} mm, the reaction exact.
-- OMPL's generator is seeded, once; what its planners reach in a given time varies all the same.
+- All planners work in one plane: progress along the straight line [m] and lateral offset [m],
+  within the lattice's window; the same configuration at each point, reaction included, and the same
+  Coal query.
+- Lengths are those of the base's track in the plane. Our planners minimise Eq. 6, in which the
+  joints' displacement is part of each step, and have corners on the layers only. The last two
+  columns count scenes where `plan()` has a path and this one is free of collisions; "shorter" and
+  "longer" begin at {100 * SAME:g} %.
+- Our paths are monotone in progress, one node in each layer. OMPL's paths may go back, and so
+  there are OMPL paths, some of them shorter, that no such lattice contains.
+- Our times are those of `plan()` as a whole, proofs included. OMPL's are those of `solve` alone
+  (and of the simplification where named), with a validity checker in Python that reads the reaction
+  from a table; the time to make the table is not counted.
+- The edge resolution is OMPL's, relative to the plane's diagonal; {DEFAULT:g} is its default.
+  Collisions are found by distances in closed form every {1e3 * STEP:g} mm, with the exact reaction.
+- OMPL's generator is seeded once; the results of its planners in a given time still vary.
 """
 
 
@@ -286,10 +297,11 @@ def main():
         seed += 1
     introduction = f"""# Side by side with OMPL 2.0.1
 
-`python -m benchmarks.studies.planners.ompl_peers --scenes {done} --seconds {given.seconds:g}`: {done} random scenes
-(`benchmarks/random_scenes.py`, seeds from {FIRST_SEED}, delta = 0; {skipped} left out: start or goal in
-collision). All times are processor times of one thread; {(time.process_time() - begin) / 60.0:.0f}
-minutes in all.
+    python -m benchmarks.studies.planners.ompl_peers --scenes {done} --seconds {given.seconds:g}
+
+{done} random scenes (`benchmarks/random_scenes.py`, seeds from {FIRST_SEED}, delta = 0; {skipped}
+left out: start or goal in collision). All times are processor times of one thread;
+{(time.process_time() - begin) / 60.0:.0f} minutes in all.
 
 """
     results = table(HEAD.split("; "), rows(runs))

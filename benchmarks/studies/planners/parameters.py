@@ -1,4 +1,4 @@
-"""What the parameters of the paper's Ant System do: gap and cycles until stagnation.
+"""Effect of the Ant System's parameters on the gap and on the cycles until stagnation.
 
     python -m benchmarks.studies.planners.parameters
 
@@ -30,14 +30,19 @@ SYMBOLS = {"alpha": "α", "beta": "β", "rho": "ρ", "Q": "Q", "C": "C"}
 
 
 class Trial(NamedTuple):
-    """The runs with one value of one parameter."""
+    """The runs with one value of one parameter.
+
+    Attributes:
+        parameter: name of the parameter.
+        value: its value.
+        curves: for each run the gap of the best path after each cycle.
+        stagnated: number of runs that ended because all ants took one path.
+    """
 
     parameter: str
     value: float
     curves: list[np.ndarray]
-    """For each run the gap of the best path after each cycle."""
     stagnated: int
-    """How many runs ended because all ants took one path."""
 
     @property
     def gaps(self) -> np.ndarray:
@@ -62,7 +67,7 @@ def attempt(case: Case, parameter: str, value: float, runs: int) -> Trial:
 
 
 def draw(trials: list[Trial], out: Path) -> None:
-    """Above the gap, below the cycles; dots are runs, lines medians, the paper's value is open."""
+    """Gap (upper row) and cycles (lower row); dots are runs, lines medians, grey the default."""
     figure, panels = plt.subplots(2, 5, figsize=(13, 5.4), sharey="row", sharex="col")
     for column, parameter in zip(panels.T, VALUES, strict=True):
         chosen = [t for t in trials if t.parameter == parameter]
@@ -95,7 +100,7 @@ def draw(trials: list[Trial], out: Path) -> None:
 
 
 def reading(trials: list[Trial]) -> str:
-    """What each parameter can do alone, in words that the numbers choose."""
+    """Summary of the table in sentences."""
     found = {(t.parameter, t.value): t for t in trials}
     medians = {key: 100.0 * float(np.median(t.gaps)) for key, t in found.items()}
     best = min(medians, key=lambda key: medians[key])
@@ -128,6 +133,7 @@ def reading(trials: list[Trial]) -> str:
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--runs", type=int, default=5, help="seeds for each value")
     parser.add_argument("--scenario", default="fig2a")
@@ -154,8 +160,10 @@ def main() -> None:
     header = ["parameter", "median gap, %", "least", "largest", "median cycles", "stagnated"]
     publish(
         "# Parameters of the Ant System\n\n"
-        f"    python -m benchmarks.studies.planners.parameters --scenario {args.scenario} --runs {args.runs}\n\n"
-        f"Scenario {args.scenario}, {args.runs} seeds a value, all other parameters at their "
+        f"    python -m benchmarks.studies.planners.parameters --scenario {args.scenario} "
+        f"--runs {args.runs}\n\n"
+        f"Scenario {args.scenario}, {args.runs} seeds for each value, all other parameters at "
+        "their "
         f"defaults ({DEFAULT}), no refinement. Gap to the exact lattice optimum; cycles until all "
         f"ants take one path, at most {DEFAULT.cycles}.\n\n"
         f"{table(header, rows)}\n\n{reading(trials)}\n\n"

@@ -1,7 +1,9 @@
-"""How close F after refinement comes to the best known, and what refinement gains and costs.
+"""F after refinement relative to the best known F, and the gain and time of refinement.
 
-`python -m benchmarks.studies.planners.refinement_quality` plans random scenes by default settings, sets F against
-the least that finer lattices of as many divisions reach, and writes docs/benchmarks/refinement.md.
+    python -m benchmarks.studies.planners.refinement_quality
+
+plans random scenes with default settings, compares F with the least F on finer lattices with the
+same number of divisions, and writes docs/benchmarks/refinement.md.
 """
 
 import argparse
@@ -26,7 +28,7 @@ ROUNDING = 1e-12
 
 @dataclass
 class Case:
-    """One scene at one delta that the default plan has a path for."""
+    """One scene at one delta for which the default plan has a path."""
 
     seed: int
     lattice_f: float
@@ -48,7 +50,7 @@ def finer(times):
 
 
 def rival(seed, delta, times, refine):
-    """F that the exact optimum of a finer lattice reaches; infinite if it has no path."""
+    """F of the exact optimum on a finer lattice; infinite if it has no path."""
     try:
         problem = random_problem(seed, delta, finer(times))
         return fp.plan(problem, fp.LatticeOptimum(), refine=refine).objective
@@ -57,7 +59,7 @@ def rival(seed, delta, times, refine):
 
 
 def examine(seed, delta, finest):
-    """A `Case`; None if the default plan has no path, with whether the finer lattice has one."""
+    """A `Case`, or None if the default plan has no path; whether a finer lattice has a path."""
     problem = random_problem(seed, delta)
     rivals = {
         "4 times finer": rival(seed, delta, 4, False),
@@ -122,8 +124,8 @@ all.
 - The best known F is the least of the default plan and of the exact optimum of a lattice with four
   times finer lateral spacing, with and without refinement, and, for delta = {finest} in the
   first {subset} scenes, of a 16 times finer one. Layers and window are the same, so that F is.
-- The nodes of the 16 times finer lattice are the ones that refinement may choose from: its optimum
-  is the least that refinement could reach, and what lies below that is a matter of the step.
+- Refinement chooses among the nodes of the 16 times finer lattice, so that its optimum is the least
+  F that refinement could reach.
 - "F rose" counts plans whose F is higher than that of their path on the lattice; "verified" those
   that pass `plan.verify(samples=100)`. The time is that of refinement alone, within `plan()`.
 - Without a plan, since the lattice has no path: {missing} of {all}; the finer lattices have one in

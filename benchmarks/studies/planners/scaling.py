@@ -1,13 +1,13 @@
-"""How the time of a search grows with ants, cycles, divisions and nodes a layer.
+"""Search time against ants, cycles, divisions and nodes in a layer.
 
     python -m benchmarks.studies.planners.scaling
 
 varies one of them at a time around 30 ants x 242 cycles on 41 x 41 nodes, over random scenes
-(`scenes.py`, delta = 2), fits exponents, and writes docs/benchmarks/scaling.md and scaling.png. It
-takes about two minutes.
+(`benchmarks/random_scenes.py`, delta = 2), fits exponents, and writes docs/benchmarks/scaling.md
+and scaling.png. It takes about two minutes.
 
-The Ant System would stop early by stagnation, and no law in cycles or ants would show. Here it gets
-rho = 0.999999 and Q = 1e-9: pheromone stays flat, the ants go on to differ, all cycles run.
+With its default settings the Ant System stops early by stagnation, and no exponent could be fitted.
+Here rho = 0.999999 and Q = 1e-9: the pheromone stays uniform and all cycles run.
 """
 
 import argparse
@@ -35,12 +35,18 @@ COLOURS = {"AntSystem": "tab:orange", "MaxMinAntSystem": "tab:blue"}
 
 
 class Law(NamedTuple):
-    """Times of one planner while one size varies."""
+    """Times of one planner while one size varies.
+
+    Attributes:
+        planner: name of the planner.
+        size: name of the size that varies, a key of `VALUES`.
+        kind: "search" alone, or "plan" as a whole.
+        seconds: CPU time for each value [s].
+    """
 
     planner: str
     size: str
     kind: str
-    """The search alone, or `plan` as a whole."""
     seconds: list[float]
 
     @property
@@ -56,6 +62,7 @@ class Law(NamedTuple):
 
 
 def planners(ants: int, cycles: int) -> dict[str, fp.AntSystem | fp.MaxMinAntSystem]:
+    """The planners that are timed, by name."""
     return {
         "AntSystem": fp.AntSystem(ants=ants, cycles=cycles, rho=0.999999, Q=1e-9),
         "MaxMinAntSystem": fp.MaxMinAntSystem(ants=ants, cycles=cycles),
@@ -63,6 +70,7 @@ def planners(ants: int, cycles: int) -> dict[str, fp.AntSystem | fp.MaxMinAntSys
 
 
 def lattice(divisions: int, nodes: int) -> fp.Lattice:
+    """A lattice of constant lateral width."""
     return fp.Lattice(divisions, fp.Axis(nodes // 2, WIDTH / (nodes - 1)))
 
 
@@ -71,7 +79,7 @@ def measure(
 ) -> dict[tuple[str, str], float]:
     """Mean over the scenes of the least CPU time [s], by planner and kind of time.
 
-    Every search gets a roadmap of its own: `forget` would keep what the prover knows of the motion.
+    Every search gets a new roadmap; a copy without edge states would keep the prover's bounds.
     """
     problems = [random_problem(seed, DELTA, lattice(divisions, nodes)) for seed in seeds]
     seconds = {}
@@ -80,7 +88,7 @@ def measure(
         for k, problem in enumerate(problems):
             for repeat in range(repeats):
                 fresh, rng = fp.Roadmap(problem), np.random.default_rng(repeat)
-                np.sum(fresh.clearances)  # all nodes now: they are evaluated when first needed
+                np.sum(fresh.clearances)  # evaluates all nodes now; otherwise on first use
                 begin = time.process_time()
                 found = planner.search(fresh, rng)
                 between = time.process_time()
@@ -88,12 +96,13 @@ def measure(
                 spent = (between - begin, time.process_time() - between)
                 least[:, k] = np.minimum(least[:, k], spent)
                 if len(found.history.best) != cycles:
-                    raise RuntimeError(f"{name} stopped early, there is no law to measure")
+                    raise RuntimeError(f"{name} stopped early, no exponent can be fitted")
         seconds |= {(name, kind): float(least[i].mean()) for i, kind in enumerate(TIMES)}
     return seconds
 
 
 def draw(laws: list[Law], out: Path) -> None:
+    """One panel for each size, on logarithmic axes."""
     figure, panels = plt.subplots(1, 4, figsize=(14, 4.4), sharey=True)
     for axes, size in zip(panels, VALUES, strict=True):
         for law in (law for law in laws if law.size == size):
@@ -114,7 +123,7 @@ def draw(laws: list[Law], out: Path) -> None:
 
 
 def reading(laws: list[Law]) -> str:
-    """What the exponents say of O(M_h K), M_h ants times K cycles."""
+    """Comparison of the exponents with O(M_h K), M_h ants times K cycles."""
     lines = []
     for name in COLOURS:
         fits = {law.size: law for law in laws if (law.planner, law.kind) == (name, "search")}
@@ -134,6 +143,7 @@ def reading(laws: list[Law]) -> str:
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--scenes", type=int, default=3)
     parser.add_argument("--repeats", type=int, default=1, help="of which the least time counts")
@@ -161,7 +171,8 @@ def main() -> None:
     header = ["planner, time", "size", "from", "first ms", "last ms", "exponent", "last two"]
     publish(
         "# Scaling\n\n"
-        f"    python -m benchmarks.studies.planners.scaling --scenes {args.scenes} --repeats {args.repeats}\n\n"
+        f"    python -m benchmarks.studies.planners.scaling --scenes {args.scenes} "
+        f"--repeats {args.repeats}\n\n"
         f"One size at a time around {DEFAULTS}, the lateral window always {WIDTH:g} m wide; CPU "
         f"time, mean over random scenes {seeds}, delta = {DELTA:g}. 'search' leaves out the "
         "roadmap and the clearances of all its nodes, 'plan' is the whole of `plan(refine=False)`, "

@@ -1,10 +1,10 @@
-"""What each part of the proof saves: distance queries between the ends of edges.
+"""Distance queries of a proof, by the travel bound that it uses.
 
     python -m benchmarks.studies.proofs.certification
 
-The same edges are certified with a simple bound on travel (every joint at its fastest, in the worst
-direction), with the sharp one for all links together, and link by link. Verdicts are the same but
-for edges that come nearer than the tolerance.
+The same edges are certified with a simple bound on travel (every joint at its largest rate, in the
+worst direction), with the sharp bound for all links together, and link by link. Verdicts differ
+only for edges whose clearance falls below the tolerance.
 """
 
 import argparse
@@ -18,35 +18,42 @@ import ffsr_plan as fp
 from benchmarks.random_scenes import FIRST_SEED, LATTICE, RESULTS, publish, random_problem, table
 from benchmarks.studies.proofs.travel_bound import simple_speeds
 from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.proof.edges import ObstacleEdge
 from ffsr_plan.proof.interval_halving import Verdict, certify
-from ffsr_plan.proof.prover import Prover, _ObstacleEdge
+from ffsr_plan.proof.prover import Prover
 
 TOLERANCE = 1e-4
 
 
-class Together(_ObstacleEdge):
-    """Judged by the least clearance of all links."""
+class Together:
+    """An edge judged by the least clearance of all links and the largest travel bound."""
+
+    def __init__(self, edge: ObstacleEdge) -> None:
+        self._edge = edge
+        self.speed, self.rounding, self.clearance = edge.speed, edge.rounding, edge.clearance
 
     def parts(self, time: float) -> np.ndarray:
         """(1,) [m]."""
-        return np.array([min(super().parts(time))])
+        return np.array([min(self._edge.parts(time))])
 
     def travel(self, begin: float, end: float) -> np.ndarray:
         """(1,) [m]."""
-        return super().travel(begin, end).max(keepdims=True)
+        return self._edge.travel(begin, end).max(keepdims=True)
 
 
 class Simple(Together):
-    """The same, with one speed for the whole edge."""
+    """The same with one speed bound for the whole edge."""
 
-    fastest = 0.0
+    def __init__(self, edge: ObstacleEdge, joint_speed: float) -> None:
+        super().__init__(edge)
+        self._fastest = joint_speed + np.linalg.norm(edge.base_step)
 
     def travel(self, begin: float, end: float) -> np.ndarray:
         """(1,) [m]."""
-        return np.array([(end - begin) * (self.fastest + np.linalg.norm(self._step))])
+        return np.array([(end - begin) * self._fastest])
 
 
-KINDS = {"simple bound": Simple, "sharp bound": Together, "sharp, link by link": _ObstacleEdge}
+KINDS = ("simple bound", "sharp bound", "sharp, link by link")
 
 
 class Task(NamedTuple):
@@ -89,19 +96,20 @@ def certified(task: Task) -> dict[str, list[Verdict]]:
     """The verdicts on the same edges, by each kind of proof; without edges whose ends collide."""
     joints, prover = task.motion.joint_values, task.prover
     steps = np.diff(joints[:2], axis=0)
-    Simple.fastest = float(simple_speeds(task.motion.robot, joints[:1], steps, None).max())
-    found: dict[str, list[Verdict]] = {name: [] for name in KINDS}
-    for layer, begin, end in task.edges:
-        ends = prover.clearances(np.array([layer, layer + 1]), np.stack([begin, end]))
+    joint_speed = float(simple_speeds(task.motion.robot, joints[:1], steps, None).max())
+    verdicts: dict[str, list[Verdict]] = {name: [] for name in KINDS}
+    for layer, tail, head in task.edges:
+        ends = prover.clearances(np.array([layer, layer + 1]), np.stack([tail, head]))
         if min(ends) > 0.0:
-            for name, kind in KINDS.items():
-                edge = kind(prover, layer, begin, end)
-                found[name].append(certify(edge, (float(ends[0]), float(ends[1])), TOLERANCE))
-    return found
+            edges = [prover.obstacle_edge(layer, tail, head) for _ in KINDS]
+            judged = (Simple(edges[0], joint_speed), Together(edges[1]), edges[2])
+            for name, edge in zip(KINDS, judged, strict=True):
+                verdicts[name].append(certify(edge, (float(ends[0]), float(ends[1])), TOLERANCE))
+    return verdicts
 
 
 def tasks(scenes: int, edges: int) -> Iterator[tuple[str, Task]]:
-    """All that is to be certified, by group."""
+    """All edges to be certified, by group."""
     for seed in range(FIRST_SEED, FIRST_SEED + scenes):
         try:
             problem = random_problem(seed, 0.0)
@@ -114,6 +122,7 @@ def tasks(scenes: int, edges: int) -> Iterator[tuple[str, Task]]:
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--edges", type=int, default=2000, help="in each scene, and arm swings")
     parser.add_argument("--scenes", type=int, default=20)
@@ -137,11 +146,12 @@ def main() -> None:
         "for a refused one",
     ]  # fmt: skip
     publish(
-        f"# What a proof costs\n\n`python -m benchmarks.studies.proofs.certification --edges {args.edges} "
-        f"--scenes {args.scenes}`\n\nEdges of lattices between neighbouring offsets, and arms that "
+        "# Queries of a proof\n\n`python -m benchmarks.studies.proofs.certification "
+        f"--edges {args.edges} --scenes {args.scenes}`\n\nEdges of lattices between neighbouring "
+        "offsets, and arms that "
         "swing by half a radian a joint while the\nbase reacts; both ends free. A query is Coal's "
         "distance between the ends of an edge, over all pairs.\nOn these lattices the base moves "
-        "far more than the arms, so that all bounds are much alike there.\n\n"
+        "far more than the arms, so that all bounds are similar there.\n\n"
         + table(header, rows)
         + "\n",
         args.out,

@@ -1,8 +1,8 @@
-"""Node clearances among many obstacles: time against their number, and the answers checked.
+"""Time and error of node clearances against the number of obstacles.
 
     python -m benchmarks.studies.proofs.many_obstacles
 
-Spheres are drawn into one box with radii that shrink with their number, so that they always fill
+Spheres are drawn into one box, their radii decreasing with their number, so that they always fill
 the same share of it.
 """
 
@@ -64,6 +64,7 @@ def measure(problem: fp.Problem, checked: int) -> tuple[float, float, float]:
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--checked", type=int, default=200, help="nodes compared with all pairs")
     args = parser.parse_args()
@@ -78,7 +79,8 @@ def main() -> None:
             [f"{count:,}".replace(",", " "), f"{setup * 1e3:.2f} ms", f"{node:.2f} µs",
              f"{node / first:.1f}", f"{error:.1e} m"]
         )  # fmt: skip
-    text = "# Clearance among many obstacles\n\n`python -m benchmarks.studies.proofs.many_obstacles`\n\n"
+    text = "# Clearance among many obstacles\n\n"
+    text += "`python -m benchmarks.studies.proofs.many_obstacles`\n\n"
     text += (
         "All nodes of a 41 x 41 lattice, planar dual-arm robot (7 box links), one thread. `setup` "
         "builds the tree over\nthe spheres; the time of a node includes Coal's distance of the "

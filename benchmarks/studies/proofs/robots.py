@@ -1,10 +1,10 @@
-"""The same figures for every robot: clearances, optimum, colony, proofs, as ratios to Pinocchio's.
+"""Times of clearances, optimum and colony for every robot, as ratios to Pinocchio's.
 
     python -m benchmarks.studies.proofs.robots
 
 Robots travel 10 m through random spheres with their arms moving, on lattices of 41 layers with a
-lateral axis of 41 offsets and with lateral and normal axes of 13 by 13. C is what plain
-`pin.computeDistances` needs for all nodes of the same lattice, measured beside each figure. Writes
+lateral axis of 41 offsets and with lateral and normal axes of 13 by 13. C is the time of plain
+`pin.computeDistances` for all nodes of the same lattice, measured with each figure. Writes
 docs/benchmarks/robots.md. The defaults take about ten minutes.
 """
 
@@ -29,7 +29,7 @@ UPRIGHT = {"panda_joint4": -1.5, "panda_joint6": 1.5}
 
 
 class Task(NamedTuple):
-    """A robot, and the joint values that it begins and ends with."""
+    """A robot, and its joint values at start and goal."""
 
     robot: fp.SpaceRobot
     begin: dict[str, float]
@@ -61,7 +61,7 @@ def tasks() -> dict[str, Task]:
 
 
 def problems(task: Task, lattice: fp.Lattice, seed: int, count: int) -> Iterator[fp.Problem]:
-    """Random scenes that have a path; spheres lie in a plane where the lattice does."""
+    """Random scenes that have a path; the spheres of a planar lattice lie in its plane."""
     rng = np.random.default_rng(seed)
     start = task.robot.configuration(joints=task.begin)
     goal = task.robot.configuration((10.0, 0.0, 0.0), joints=task.end)
@@ -90,7 +90,7 @@ def seconds(run: Callable[[], object], repeats: int) -> float:
 
 
 class Figures(NamedTuple):
-    """Of one problem; times in units of C."""
+    """Figures of one problem; times in units of C."""
 
     nodes: float
     optimum: float
@@ -125,7 +125,7 @@ def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", type=int, default=5, help="for each robot and lattice")
-    parser.add_argument("--repeats", type=int, default=3, help="of each time, of which the median")
+    parser.add_argument("--repeats", type=int, default=3, help="timings; the median is shown")
     parser.add_argument("--samples", type=int, default=500, help="of the verification, per edge")
     parser.add_argument("--out", type=Path, default=RESULTS / "robots.md")
     args = parser.parse_args()
@@ -150,8 +150,9 @@ def main() -> None:
         "default colony", "its largest gap", "queries per edge proven", "verified",
     ]  # fmt: skip
     publish(
-        f"# Robots\n\n`python -m benchmarks.studies.proofs.robots --scenes {args.scenes} --repeats {args.repeats} "
-        f"--samples {args.samples}`\n\nRandom scenes of 4 to 11 spheres, delta 0.1; the arms move "
+        f"# Robots\n\n`python -m benchmarks.studies.proofs.robots --scenes {args.scenes} "
+        f"--repeats {args.repeats} --samples {args.samples}`\n\nRandom scenes of 4 to 11 spheres, "
+        "delta 0.1; the arms move "
         "on the way. Times are medians, whole plans without refinement, certified; C is the time "
         "of `pin.computeDistances` for all nodes of the same lattice. Plans of the colony and of "
         "the optimum (refined) are verified.\n\n" + table(header, rows) + "\n",

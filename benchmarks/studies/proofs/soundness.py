@@ -1,9 +1,9 @@
-"""A long search for false proofs: random robots, motions and obstacles that the motion grazes.
+"""A search for false proofs, with random robots, motions and grazing obstacles.
 
     python -m benchmarks.studies.proofs.soundness --edges 100000 --workers 2
 
-Obstacles are grown until the motion passes them at a clearance drawn from 2e-5 to 1e-2 m, or until
-it runs into them as deep (`tests/helpers/grazing_obstacles.py`).
+Obstacles are enlarged until the motion passes them at a clearance drawn from 2e-5 to 1e-2 m, or
+penetrates them by that depth (`tests/helpers/grazing_obstacles.py`).
 """
 
 import argparse
@@ -12,14 +12,15 @@ import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: one thread a worker
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: one thread each
 from benchmarks.random_scenes import RESULTS, publish, table
 from tests.helpers.grazing_obstacles import Counts, look_at
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--edges", type=int, default=100_000, help="free ones to be found")
+    parser.add_argument("--edges", type=int, default=100_000, help="free edges to collect")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=RESULTS / "soundness.md")
@@ -42,10 +43,11 @@ def main() -> None:
         ["of these, with more than 1e-3 m at all samples", f"{total.wrongly_refused}"],
     ]
     publish(
-        f"# Looking for false proofs\n\n`python -m benchmarks.studies.proofs.soundness --edges {args.edges} "
-        f"--first-seed {args.first_seed}`\n\nRandom trees of boxes, balls, capsules "
+        "# Looking for false proofs\n\n`python -m benchmarks.studies.proofs.soundness "
+        f"--edges {args.edges} --first-seed {args.first_seed}`\n\nRandom trees of boxes, balls, "
+        "capsules "
         "and, in every tenth, cylinders (inside prisms), revolute, continuous and\nprismatic "
-        "joints, all modes, joint steps up to a radian and more; obstacles that it grazes.\n"
+        "joints, all modes, joint steps up to a radian and more; obstacles close to the motion.\n"
         f"{seed - args.first_seed} motions, {minutes:.0f} minutes.\n\n"
         + table(["edges", "number"], rows)
         + "\n",

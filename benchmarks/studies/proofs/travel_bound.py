@@ -1,8 +1,8 @@
-"""Is the travel bound ever outrun, and how far above the travel does it lie?
+"""Travel bound against sampled travel on random intervals: violations and excess.
 
     python -m benchmarks.studies.proofs.travel_bound --robots 1000
 
-samples what every shape travels on intervals of random edges of random robots, and of the planar
+samples the travel of every shape on intervals of random edges of random robots and of the planar
 dual-arm robot, and writes docs/benchmarks/travel.md. It takes about five minutes.
 """
 
@@ -29,7 +29,7 @@ STEPS = (0.03, 0.1, 0.3, 1.0)
 LENGTHS = (1.0, 1 / 4, 1 / 16, 1 / 64)
 """Of an interval, in units of edge time."""
 BASES = ("base moves", "base still", "base keeps step")
-"""0.25 m over an edge; not at all; so that one point of the robot stands still at the middle."""
+"""By 0.25 m over an edge; not at all; such that a point of the robot is at rest at the middle."""
 MODES = ("free-flying", "attitude-held")
 BASE_STEP = 0.25
 REPEATS = 4  # edges for each step, and intervals for each edge, length and motion of the base
@@ -38,14 +38,19 @@ ROUNDING = 1e-12
 
 
 class Found(NamedTuple):
-    """One robot and mode; arrays over edge, repeat, length, base and shape."""
+    """Results of one robot and mode; arrays over edge, repeat, length, base and shape.
+
+    Attributes:
+        steps: (edges,) joint steps.
+        sampled: sampled travel [m].
+        bound: the travel bound T [m].
+        simple: the bound with every joint at its largest rate in the worst direction [m].
+    """
 
     steps: np.ndarray
-    """(edges,) joint steps."""
     sampled: np.ndarray
     bound: np.ndarray
     simple: np.ndarray
-    """The bound that takes every joint at its fastest in the worst direction."""
 
 
 def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
@@ -69,7 +74,7 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
     which = np.broadcast_to(np.arange(len(BASES)), shape).ravel()
     base[which == 1] = 0.0
     turns = scales[:, None] * rng.uniform(-1, 1, (edges, 3))
-    reaction = Reaction(robot, corners)
+    reaction = Reaction.along(robot, corners)
     for mode in MODES:
         if mode == "free-flying":
             quats = reaction.rotation(every, times.ravel())
@@ -105,7 +110,7 @@ def relative_places(robot: fp.SpaceRobot, joint_values: np.ndarray) -> np.ndarra
 def simple_speeds(
     robot: fp.SpaceRobot, begin: np.ndarray, steps: np.ndarray, omega: "np.ndarray | None"
 ) -> np.ndarray:
-    """(edges, g) speed of each shape about the base origin when every joint does its worst."""
+    """(edges, g) speed bound of each shape about the base origin, every joint in the worst case."""
     model, tree = robot.model, Tree(robot.model)
     angular, linear, distance = np.zeros((3, len(steps), model.njoints - 1))
     ends = [np.linalg.norm(tree.offsets(q), axis=-1) for q in (begin, begin + steps)]
@@ -140,7 +145,7 @@ class Ratios:
         self.closest = np.inf
 
     def add(self, found: Found) -> None:
-        """Count one robot and mode in."""
+        """Add the results of one robot and mode."""
         self.count += found.sampled.size
         self.violations += int(np.sum(found.sampled > found.bound + ROUNDING))
         travels = found.sampled > 1e-9
@@ -168,6 +173,7 @@ class Ratios:
 
 
 def main() -> None:
+    """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--robots", type=int, default=1000)
     parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help="of the robots")
@@ -194,10 +200,11 @@ def main() -> None:
         "capsules, boxes and hulls; bases from far lighter than their arms to far heavier. Each "
         f"travel is the length of a polyline of {SAMPLES} chords. A third of the intervals have "
         f"a base that moves {BASE_STEP:g} m over the edge, a third one that stays, a third one "
-        "that keeps step with a point of the robot, so that only the bend of its way remains; "
-        "the last are counted as the others, but not in the tables.\n\n"
-        "The tables give T as a multiple of the sampled travel, and beside it, as its median, "
-        "the simple bound that takes every joint at its fastest in the worst direction. The "
+        "that compensates the velocity of a point of the robot, so that only the curvature of its "
+        "path remains; the last are checked like the others, but not in the tables.\n\n"
+        "The tables give T as a multiple of the sampled travel, and the median of the simple "
+        "bound, "
+        "with every joint at its largest rate in the worst direction. The "
         "joint step is the most that a joint may change over the edge [rad or m], h the "
         "interval's share of the edge.\n\n"
         f"## planar_dual_arm, free-flying\n\n{planar.table()}\n\n"

@@ -9,13 +9,13 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.checks import number, whole_number
-from ffsr_plan.core.errors import PlanningError
+from ffsr_plan.core.errors import InternalError, PlanningError
 from ffsr_plan.core.kernels import call
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
 
-_FAINT = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
+_LEAST_PHEROMONE = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class AntSystem(LatticePlanner):
         """Run the colony.
 
         Raises:
-            NoPath: proven, when every way on from the start has been refused.
+            NoPath: proven, when every edge that leaves the start has been refused.
         """
         monitor = monitor or SearchMonitor()
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
@@ -92,7 +92,7 @@ class AntSystem(LatticePlanner):
                 deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
                 tau *= self.rho
                 np.add.at(tau, edges, deposit)
-                np.maximum(tau, _FAINT, out=tau)
+                np.maximum(tau, _LEAST_PHEROMONE, out=tau)
                 np.add.at(laid, edges, deposit)
                 np.add.at(walked, edges, 1)
                 distinct = len(np.unique(paths, axis=0))
@@ -120,19 +120,19 @@ class Walk:
     """Ants walking from start to goal by Eq. 11.
 
     Edges are certified when an ant first chooses them. One that is refused is closed and the ant
-    draws again, which gives exactly the roulette wheel over the allowed edges. Nodes from which the
-    goal is known to be out of reach are not allowed.
+    draws again, which gives exactly the roulette wheel over the allowed edges. Nodes from
+    which the goal is known to be unreachable are not allowed.
     """
 
     def __init__(self, settings: AntSystem, roadmap: Roadmap, rng: np.random.Generator) -> None:
-        from ffsr_plan.search.ants.open_edges import open_ways
+        from ffsr_plan.search.ants.open_edges import find_open_edges
 
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
         self._roadmap, self._rng, self._alpha = roadmap, rng, settings.alpha
         steps = np.maximum(roadmap.lattice.steps, 1e-12)  # a step of no length at all stays visible
         self._log_visibility = -settings.beta * np.log(steps)
-        self._ways, self._exits = open_ways(roadmap.admissible, roadmap.status)
-        self._wheels = np.empty((m, n, n))
+        self._open_edges, self._open_counts = find_open_edges(roadmap.admissible, roadmap.status)
+        self._roulettes = np.empty((m, n, n))
         self._changed = np.ones((m, n), dtype=bool)
         self._paths = np.full((settings.ants, m + 1), roadmap.lattice.origin, dtype=np.int64)
 
@@ -150,15 +150,20 @@ class Walk:
         ant, layer = 0, -1
         while True:
             ant, layer = call(
-                walk, self._rng, tau, self._alpha, self._log_visibility, self._ways, self._exits,
-                roadmap.status, self._wheels, self._changed, paths, ant, layer,
+                walk, self._rng, tau, self._alpha, self._log_visibility, self._open_edges,
+                self._open_counts, roadmap.status, self._roulettes, self._changed,
+                paths, ant, layer,
             )  # fmt: skip
             if ant == len(paths):
                 return paths
             if ant < 0:
-                raise roadmap.no_path() or PlanningError("the ants are lost")
+                raise roadmap.no_path() or InternalError(
+                    "no open edge at the start, but the roadmap has a path"
+                )
             if not roadmap.free(layer, int(paths[ant, layer]), int(paths[ant, layer + 1])):
-                close_refused(layer, roadmap.status, self._ways, self._exits, self._changed)
+                close_refused(
+                    layer, roadmap.status, self._open_edges, self._open_counts, self._changed
+                )
 
 
 def _trails(walked: IntArray, laid: Array, tau: Array) -> Trails:

@@ -1,4 +1,4 @@
-"""The walk of the Ant System's ants, compiled: Eq. 11, one ant after the other."""
+"""Compiled tours of the Ant System's ants: Eq. 11, one ant after the other."""
 
 from __future__ import annotations
 
@@ -6,22 +6,21 @@ import numpy as np
 from numba import njit
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States
-
-_FREE = 1
+from ffsr_plan.lattice.edge_states import FREE
 
 
 @njit(cache=True, nogil=True)
-def _spin_up(wheel: Array, log_weight: Array, open_row: Flags) -> None:
-    """Cumulated weights of one row, scaled by its largest: only ratios count."""
+def _fill_roulette(roulette: Array, log_weight: Array, open_row: Flags) -> None:
+    """Cumulative weights of one row, scaled by the largest: only ratios count."""
     largest = -np.inf
-    for k in range(len(wheel)):
+    for k in range(len(roulette)):
         if open_row[k] and log_weight[k] > largest:
             largest = log_weight[k]
     total = 0.0
-    for k in range(len(wheel)):
+    for k in range(len(roulette)):
         if open_row[k]:
             total += np.exp(log_weight[k] - largest)
-        wheel[k] = total
+        roulette[k] = total
 
 
 @njit(cache=True, nogil=True)
@@ -30,63 +29,59 @@ def walk(
     tau: Array,
     alpha: float,
     log_visibility: Array,
-    ways: Flags,
-    exits: IntArray,
+    open_edges: Flags,
+    open_counts: IntArray,
     status: States,
-    wheels: Array,
+    roulettes: Array,
     changed: Flags,
     paths: IntArray,
     ant: int,
     layer: int,
 ) -> tuple[int, int]:
-    """Walk on from `ant` at `layer` until an unproven edge is chosen or all ants have arrived.
+    """Continue the tours from `ant` at `layer` until an unproven edge is chosen or all are done.
 
     Args:
-        rng: numpy Generator.
+        rng: source of randomness.
         tau: (m, n, n) pheromone.
         alpha: its weight.
         log_visibility: (n, n) beta log eta.
-        ways: (m, n, n) which edges may be chosen.
-        exits: (m, n) number of ways on from each node.
+        open_edges: (m, n, n) edges that may be chosen.
+        open_counts: (m, n) number of open edges from each node.
         status: (m, n, n) what is known of each edge.
-        wheels: (m, n, n) cumulated weights, kept between calls.
-        changed: (m, n) rows of `wheels` that are out of date; set them all after each cycle.
+        roulettes: (m, n, n) cumulative weights, kept between calls.
+        changed: (m, n) rows of `roulettes` that are out of date; set them all after each cycle.
         paths: (ants, m + 1) nodes; an edge chosen but unproven is left in it.
-        ant: where to go on; the edge `layer` of its path may have been proven since.
-        layer: as above.
+        ant: ant to continue with; the edge `layer` of its path may have been proven since.
+        layer: layer to continue at, -1 at the beginning.
 
     Returns:
-        ant and layer of the unproven edge, or (ants, 0) at the end; ant -1 if the start is a dead
+        Ant and layer of the unproven edge; (ants, 0) at the end; (-1, 0) if the start is a dead
         end.
     """
     ants, m = len(paths), len(tau)
-    n = ways.shape[1]
-    scratch = np.empty(n)
-    resumed = layer >= 0
-    if not resumed:
-        layer = 0
+    scratch = np.empty(open_edges.shape[1])
+    resumed, layer = layer >= 0, max(layer, 0)
     while ant < ants:
         while layer < m:
             tail = paths[ant, layer]
             if resumed:
                 resumed = False
-                if status[layer, tail, paths[ant, layer + 1]] == _FREE:
+                if status[layer, tail, paths[ant, layer + 1]] == FREE:
                     layer += 1
                     continue
-            if exits[layer, tail] == 0:
+            if open_counts[layer, tail] == 0:
                 if layer == 0:
                     return -1, 0
                 layer = 0  # a dead end by now: the ant starts anew
                 continue
             if changed[layer, tail]:
-                for k in range(n):
-                    scratch[k] = alpha * np.log(tau[layer, tail, k]) + log_visibility[tail, k]
-                _spin_up(wheels[layer, tail], scratch, ways[layer, tail])
+                scratch[:] = alpha * np.log(tau[layer, tail]) + log_visibility[tail]
+                _fill_roulette(roulettes[layer, tail], scratch, open_edges[layer, tail])
                 changed[layer, tail] = False
-            wheel = wheels[layer, tail]
-            head = np.searchsorted(wheel, rng.random() * wheel[n - 1], side="right")
+            roulette = roulettes[layer, tail]
+            head = np.searchsorted(roulette, rng.random() * roulette[-1], side="right")
             paths[ant, layer + 1] = head
-            if status[layer, tail, head] != _FREE:
+            if status[layer, tail, head] != FREE:
                 return ant, layer
             layer += 1
         ant += 1

@@ -1,8 +1,9 @@
-"""Local search on a path of the lattice, compiled.
+"""Compiled local search on a path of the lattice.
 
-The neighbourhood of a path are all paths that are displaced from it, on every layer independently,
-by one of a few steps: to the nodes next to it, and some farther along an axis. It holds every shift
-of every segment by such a step, and a small shortest-path problem finds its best member.
+The neighbourhood of a path consists of all paths that are displaced from it, on every layer
+independently, by one of a few steps: to the adjacent nodes, and to some farther along an axis. It
+contains every shift of every segment by such a step; a small shortest-path problem selects its best
+member.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from numba import njit
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 
-_ENOUGH = 1e-12  # relative improvement below which a better path does not count
+_LEAST_GAIN = 1e-12  # relative improvement that counts
 
 
 def neighbourhood(indices: IntArray, wide: bool) -> IntArray:
@@ -49,11 +50,11 @@ def neighbourhood(indices: IntArray, wide: bool) -> IntArray:
 
 
 @njit(cache=True, nogil=True)
-def path_cost(path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags) -> float:
+def path_cost(path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags) -> float:
     """F of a path, infinite if one of its edges is closed."""
     total = 0.0
     for i in range(len(path) - 1):
-        if not ways[i, path[i], path[i + 1]]:
+        if not open_edges[i, path[i], path[i + 1]]:
             return np.inf
         total += edge_costs[path[i], path[i + 1]] + node_costs[i + 1, path[i + 1]]
     return total
@@ -61,7 +62,7 @@ def path_cost(path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags)
 
 @njit(cache=True, nogil=True)
 def _best_neighbour(
-    path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags, table: IntArray
+    path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags, table: IntArray
 ) -> float:
     """Replace a path by the best one in its neighbourhood; return its cost."""
     m, width = len(path) - 1, table.shape[1]
@@ -77,7 +78,7 @@ def _best_neighbour(
             least, choice = np.inf, 0
             for a in range(count):
                 total = costs[i, a] + edge_costs[nodes[i, a], head]
-                if total < least and ways[i, nodes[i, a], head]:
+                if total < least and open_edges[i, nodes[i, a], head]:
                     least, choice = total, a
             if least < np.inf:
                 costs[i + 1, reached] = least + node_costs[i + 1, head]
@@ -94,37 +95,37 @@ def _best_neighbour(
 
 
 @njit(cache=True, nogil=True)
-def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags) -> float:
-    """Put the node of each layer in turn to the best place between its neighbours; the gain."""
+def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags) -> float:
+    """Move the node of each layer in turn to the best one between its neighbours; the gain in F."""
     m, n = len(path) - 1, len(edge_costs)
     gain = 0.0
     for i in range(1, m):
         tail, now, head = path[i - 1], path[i], path[i + 1]
-        here = edge_costs[tail, now] + node_costs[i, now] + edge_costs[now, head]
-        best, choice = here, now
+        present = edge_costs[tail, now] + node_costs[i, now] + edge_costs[now, head]
+        best, choice = present, now
         for k in range(n):
             cost = edge_costs[tail, k] + node_costs[i, k] + edge_costs[k, head]
-            if cost < best and ways[i - 1, tail, k] and ways[i, k, head]:
+            if cost < best and open_edges[i - 1, tail, k] and open_edges[i, k, head]:
                 best, choice = cost, k
         path[i] = choice
-        gain += here - best
+        gain += present - best
     return gain
 
 
 @njit(cache=True, nogil=True)
 def improve(
-    path: IntArray, edge_costs: Array, node_costs: Array, ways: Flags, table: IntArray
+    path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags, table: IntArray
 ) -> float:
     """Improve a path in place until its neighbourhood holds no better one; return its cost.
 
-    A path with closed edges is mended if its neighbourhood has a way round; else the cost is
-    infinite.
+    A path with closed edges is replaced if its neighbourhood holds an open one; otherwise the cost
+    is infinite.
     """
-    cost = path_cost(path, edge_costs, node_costs, ways)
+    cost = path_cost(path, edge_costs, node_costs, open_edges)
     while True:
-        better = _best_neighbour(path, edge_costs, node_costs, ways, table)
+        better = _best_neighbour(path, edge_costs, node_costs, open_edges, table)
         if better < np.inf:
-            better -= _best_moves(path, edge_costs, node_costs, ways)
-        if not better < cost * (1.0 - _ENOUGH):
+            better -= _best_moves(path, edge_costs, node_costs, open_edges)
+        if not better < cost * (1.0 - _LEAST_GAIN):
             return min(better, cost)
         cost = better

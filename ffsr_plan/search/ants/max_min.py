@@ -9,7 +9,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.core.checks import number, truth, whole_number
-from ffsr_plan.core.errors import PlanningError
+from ffsr_plan.core.errors import InternalError, PlanningError
 from ffsr_plan.core.kernels import call
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
@@ -18,8 +18,8 @@ from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult
 if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colony runs
     from ffsr_plan.search.ants.max_min_kernels import State
 
-_LARGE = 100  # nodes a layer from which on pheromone lies on nodes, not on edges
-_TRAILS = 10_000  # edges whose trails are kept for pictures
+_LARGE_LAYER = 100  # nodes; from this size on pheromone lies on nodes, not on edges
+_MOST_TRAILS = 10_000  # edges whose trails are kept for pictures
 _CYCLES_PER_TIME_CHECK = 16  # cycles between two checks of the time
 
 
@@ -29,8 +29,8 @@ class MaxMinAntSystem(LatticePlanner):
 
     What differs from the paper's colony: ants see what a node costs, not only how far it is
     (visibility 1 / (d_pq + delta / d_imin)); only one path a cycle lays pheromone, which stays
-    between bounds; some ants of a cycle are improved by local search; the colony starts anew when
-    it no longer gets better. Paths are certified before they count; an edge that is refused is
+    between bounds; some ants of a cycle are improved by local search; the colony restarts when
+    it no longer improves. Paths are certified before they count; a refused edge is
     closed. On lattices with additive cost the local search does most of the work, as the
     documentation shows.
 
@@ -78,22 +78,22 @@ class MaxMinAntSystem(LatticePlanner):
         """Run the colony.
 
         Raises:
-            NoPath: proven, when every way on from the start has been refused.
-            PlanningError: no ant found a path, though there is one or that is not known.
+            NoPath: proven, when every edge that leaves the start has been refused.
+            PlanningError: no ant found a path, which does not prove that there is none.
         """
         from ffsr_plan.search.ants import max_min_kernels as kernel
-        from ffsr_plan.search.ants.open_edges import open_ways
+        from ffsr_plan.search.ants.open_edges import find_open_edges
 
         monitor = monitor or SearchMonitor()
         roadmap.prove_obvious()
-        ways, exits = open_ways(roadmap.admissible, roadmap.status)
-        state = self._state(roadmap, ways)
+        open_edges, open_counts = find_open_edges(roadmap.admissible, roadmap.status)
+        state = self._state(roadmap, open_edges)
         until, stride = 0, 1 if monitor.on_cycle is not None else _CYCLES_PER_TIME_CHECK
         interrupted = False
         try:
             while until < self.cycles and not interrupted:
                 until = min(until + stride, self.cycles)
-                self._run_until(until, rng, roadmap, state, exits)
+                self._run_until(until, rng, roadmap, state, open_counts)
                 if monitor.on_cycle is not None:
                     monitor.on_cycle(_report(state, self.cycles))
                 interrupted = monitor.expired() and until < self.cycles
@@ -101,10 +101,10 @@ class MaxMinAntSystem(LatticePlanner):
             interrupted = True
         if not np.isfinite(state.values[kernel.BEST]):
             raise (None if interrupted else roadmap.no_path()) or PlanningError(
-                f"none of {self.ants} ants found a free path in {state.clock[kernel.CYCLE]} "
-                "cycles, which does not mean that there is none: more cycles may find it"
+                f"none of {self.ants} ants found a free path in {state.counters[kernel.CYCLE]} "
+                "cycles, which does not prove that there is none: more cycles may find one"
             )
-        done = state.records[: state.clock[kernel.CYCLE]]
+        done = state.records[: state.counters[kernel.CYCLE]]
         history = History.of_rows(done)
         trails = _trails(state)
         return SearchResult(frozen(state.best_path), history, trails, interrupted)
@@ -115,54 +115,60 @@ class MaxMinAntSystem(LatticePlanner):
         rng: np.random.Generator,
         roadmap: Roadmap,
         state: State,
-        exits: IntArray,
+        open_counts: IntArray,
     ) -> None:
         """Run cycles; certify the paths that they come up with; close what is refused."""
         from ffsr_plan.search.ants import max_min_kernels as kernel
         from ffsr_plan.search.ants.open_edges import close_refused
 
         while True:
-            if exits[0, roadmap.lattice.origin] == 0:
-                raise roadmap.no_path() or PlanningError("the ants are lost")
+            if open_counts[0, roadmap.lattice.origin] == 0:
+                raise roadmap.no_path() or InternalError(
+                    "no open edge at the start, but the roadmap has a path"
+                )
             outcome = call(kernel.run_cycles, rng, until, state)
             if outcome == kernel.DONE:
                 return
             if roadmap.prove_path(state.candidate):
                 continue
-            changed = np.zeros(exits.shape, dtype=bool)
+            changed = np.zeros(open_counts.shape, dtype=bool)
             for layer in roadmap.refused_layers(state.candidate):
-                close_refused(layer, roadmap.status, state.ways, exits, changed)
-            state.visibility[changed] *= state.ways[changed]
-            state.untouched_wheels[changed] = np.cumsum(state.visibility[changed], axis=1)
-            state.stamps[changed] = -1
+                close_refused(layer, roadmap.status, state.open_edges, open_counts, changed)
+            state.visibility[changed] *= state.open_edges[changed]
+            state.visibility_roulettes[changed] = np.cumsum(state.visibility[changed], axis=1)
+            state.roulette_cycles[changed] = -1
 
-    def _state(self, roadmap: Roadmap, ways: Flags) -> State:
+    def _state(self, roadmap: Roadmap, open_edges: Flags) -> State:
         from ffsr_plan.search.ants.local_search_kernels import neighbourhood
         from ffsr_plan.search.ants.max_min_kernels import State
 
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
         edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
-        visibility = self._visibility(edge_costs, node_costs) * ways
+        visibility = self._visibility(edge_costs, node_costs) * open_edges
         chance = 0.05 ** (1.0 / m)
         least = (1.0 - chance) / (12.0 * chance)
         patience = self.patience or np.inf
-        rows = 1 if n >= _LARGE else n
+        rows = 1 if n >= _LARGE_LAYER else n
         indices = roadmap.lattice.indices
         nowhere = np.zeros(m + 1, dtype=np.int64)
         return State(
             edge_costs=edge_costs,
             node_costs=node_costs,
-            ways=ways,
+            open_edges=open_edges,
             status=roadmap.status,
             visibility=visibility,
-            untouched_wheels=np.cumsum(visibility, axis=2),
+            visibility_roulettes=np.cumsum(visibility, axis=2),
             near=neighbourhood(indices, wide=False),
             wide=neighbourhood(indices, wide=True),
-            settings=np.array([self.rho, least, self.improved, patience, self.pheromone]),
+            rho=self.rho,
+            least_pheromone=least,
+            improved=self.improved,
+            patience=float(patience),
+            use_pheromone=self.pheromone,
             tau=np.ones((m, rows, n)),
             touched=np.zeros((m, rows), dtype=bool),
-            wheels=np.empty((m, n, n)),
-            stamps=np.full((m, n), -1, dtype=np.int64),
+            roulettes=np.empty((m, n, n)),
+            roulette_cycles=np.full((m, n), -1, dtype=np.int64),
             paths=np.full((self.ants, m + 1), roadmap.lattice.origin, dtype=np.int64),
             costs=np.empty(self.ants),
             searched=np.full(max(64, self.improved), np.inf),
@@ -170,7 +176,7 @@ class MaxMinAntSystem(LatticePlanner):
             candidate=nowhere.copy(),
             best_path=nowhere.copy(),
             restart_path=nowhere.copy(),
-            clock=np.zeros(3, dtype=np.int64),
+            counters=np.zeros(3, dtype=np.int64),
             values=np.array([np.inf, np.inf, np.inf, 1.0]),
             records=np.zeros((self.cycles, 4)),
             walked=np.zeros((m, n, n), dtype=np.int64),
@@ -180,7 +186,7 @@ class MaxMinAntSystem(LatticePlanner):
     def _visibility(self, edge_costs: Array, node_costs: Array) -> Array:
         """(m, n, n) eta^beta, eta = 1 / (d_pq + delta / d_imin)."""
         n = len(edge_costs)
-        beta = (2.0 if n < _LARGE else 5.0) if self.beta is None else self.beta
+        beta = (2.0 if n < _LARGE_LAYER else 5.0) if self.beta is None else self.beta
         seen = np.where(np.isfinite(node_costs[1:]), node_costs[1:], 0.0) * float(self.cost_aware)
         cost = np.maximum(edge_costs[None] + seen[:, None, :], 1e-12)
         cost /= cost.min()
@@ -188,10 +194,10 @@ class MaxMinAntSystem(LatticePlanner):
 
 
 def _report(state: State, cycles: int) -> Cycle:
-    from ffsr_plan.search.ants.max_min_kernels import CYCLE, settle
+    from ffsr_plan.search.ants.max_min_kernels import CYCLE, write_untouched_rows
 
-    call(settle, state)
-    number = int(state.clock[CYCLE])
+    call(write_untouched_rows, state)
+    number = int(state.counters[CYCLE])
     best, iteration_best, mean, distinct = map(float, state.records[number - 1])
     counts = np.zeros(state.node_costs.shape, dtype=np.int64)
     np.add.at(counts, (np.arange(len(counts)), state.paths), 1)
@@ -201,13 +207,13 @@ def _report(state: State, cycles: int) -> Cycle:
 
 def _trails(state: State) -> Trails:
     """The most walked edges, in the order of layers and nodes."""
-    from ffsr_plan.search.ants.max_min_kernels import settle
+    from ffsr_plan.search.ants.max_min_kernels import write_untouched_rows
 
-    call(settle, state)
+    call(write_untouched_rows, state)
     used = np.flatnonzero(state.walked)
-    if len(used) > _TRAILS:
+    if len(used) > _MOST_TRAILS:
         ants = state.walked.ravel()[used]
-        used = np.sort(used[np.argsort(-ants, kind="stable")[:_TRAILS]])
+        used = np.sort(used[np.argsort(-ants, kind="stable")[:_MOST_TRAILS]])
     edges = np.unravel_index(used, state.walked.shape)
     layer, tail, head = edges
     level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]

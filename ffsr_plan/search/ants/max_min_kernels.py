@@ -1,4 +1,4 @@
-"""The cycles of the max-min ant system, compiled.
+"""Compiled cycles of the max-min ant system.
 
 All state lives in arrays that the caller owns, so that a run can stop where a path has to be
 proven, and go on where it stopped.
@@ -12,46 +12,54 @@ import numpy as np
 from numba import njit
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States
+from ffsr_plan.lattice.edge_states import FREE
 from ffsr_plan.search.ants.local_search_kernels import improve, path_cost
 
-_FREE = 1
 # What `run_cycles` returns with
 DONE, PROVE = 0, 1
-# Slots of `clock`: cycles done, cycles since the restart's best got better, stage within a cycle
+# Slots of `counters`: cycles done, cycles since the restart's best got better, stage within a cycle
 CYCLE, STALE, STAGE = 0, 1, 2
 # Slots of `values`: least F, that since the restart, mean F of the walks, level of untouched rows
 BEST, SINCE_RESTART, MEAN, LEVEL = 0, 1, 2, 3
 
 
 class State(NamedTuple):
-    """What the colony knows. m edges a path, n nodes a layer, F costs in units of length."""
+    """State of a colony: m edges a path, n nodes a layer, costs in units of length."""
 
     edge_costs: Array
     """(n, n)"""
     node_costs: Array
     """(m + 1, n), infinite where a node may not be entered."""
-    ways: Flags
+    open_edges: Flags
     """(m, n, n) edges that ants may choose."""
     status: States
     """(m, n, n) what is proven of each edge."""
     visibility: Array
     """(m, n, n) eta^beta, zero on closed edges."""
-    untouched_wheels: Array
-    """(m, n, n) its sums along the last axis: the wheels of rows without pheromone."""
+    visibility_roulettes: Array
+    """(m, n, n) its sums along the last axis: the roulettes of rows without pheromone."""
     near: IntArray
     """(n, w) displacements that local search tries on chosen ants."""
     wide: IntArray
     """(n, w) those that it tries on the best of a cycle."""
-    settings: Array
-    """rho, least pheromone, ants improved, stale cycles before a restart, pheromone or not."""
+    rho: float
+    """Persistence of pheromone."""
+    least_pheromone: float
+    """Lower bound of tau."""
+    improved: int
+    """Ants of a cycle that local search improves."""
+    patience: float
+    """Cycles without improvement before a restart; infinite for none."""
+    use_pheromone: bool
+    """Whether ants lay and follow pheromone."""
     tau: Array
     """(m, n or 1, n) pheromone on edges, or on the nodes that they lead to."""
     touched: Flags
     """(m, n or 1) rows of tau on which pheromone was laid since the restart."""
-    wheels: Array
+    roulettes: Array
     """(m, n, n) sums of tau times visibility of touched rows."""
-    stamps: IntArray
-    """(m, n) cycle in which a wheel was made."""
+    roulette_cycles: IntArray
+    """(m, n) cycle in which a roulette was made."""
     paths: IntArray
     """(ants, m + 1)"""
     costs: Array
@@ -66,7 +74,7 @@ class State(NamedTuple):
     """(m + 1,)"""
     restart_path: IntArray
     """(m + 1,) best path since the restart."""
-    clock: IntArray
+    counters: IntArray
     values: Array
     records: Array
     """(cycles, 4) best F, best and mean F of the cycle, number of different walks."""
@@ -85,27 +93,31 @@ def _walk(rng: np.random.Generator, s: State) -> None:
     """
     m, n = s.visibility.shape[0], s.visibility.shape[1]
     tau, touched, visibility, paths, walked = s.tau, s.touched, s.visibility, s.paths, s.walked
-    wheels, untouched_wheels, stamps = s.wheels, s.untouched_wheels, s.stamps
+    roulettes, visibility_roulettes, roulette_cycles = (
+        s.roulettes,
+        s.visibility_roulettes,
+        s.roulette_cycles,
+    )
     edge_costs, node_costs = s.edge_costs, s.node_costs
     by_edge = tau.shape[1] > 1
-    stamp = s.clock[CYCLE]
+    cycle = s.counters[CYCLE]
     for ant in range(len(paths)):
         cost = 0.0
         p = paths[ant, 0]
         for i in range(m):
             row = p if by_edge else 0
-            wheel = wheels[i, p] if touched[i, row] else untouched_wheels[i, p]
-            if touched[i, row] and stamps[i, p] != stamp:
+            roulette = roulettes[i, p] if touched[i, row] else visibility_roulettes[i, p]
+            if touched[i, row] and roulette_cycles[i, p] != cycle:
                 total = 0.0
                 for k in range(n):
                     total += tau[i, row, k] * visibility[i, p, k]
-                    wheel[k] = total
-                stamps[i, p] = stamp
-            spin = rng.random() * wheel[n - 1]
-            low, length = 0, n  # the first k whose sum exceeds the spin
+                    roulette[k] = total
+                roulette_cycles[i, p] = cycle
+            draw = rng.random() * roulette[n - 1]
+            low, length = 0, n  # the first k whose sum exceeds the draw
             while length > 1:
                 half = length // 2
-                low += half * (wheel[low + half - 1] <= spin)
+                low += half * (roulette[low + half - 1] <= draw)
                 length -= half
             paths[ant, i + 1] = low
             walked[i, p, low] += 1
@@ -123,58 +135,58 @@ def _among(searched: Array, cost: float) -> bool:
 @njit(cache=True, nogil=True)
 def _improve(s: State) -> None:
     """Local search on the best walk and on some that went elsewhere, then on the best of all."""
-    ants, improved = len(s.paths), int(s.settings[2])
+    ants, improved = len(s.paths), s.improved
     order = np.argsort(s.costs)
     different, last = 0, -1.0
     for ant in order:
         different += s.costs[ant] != last
         last = s.costs[ant]
-    s.records[s.clock[CYCLE], 3] = different
+    s.records[s.counters[CYCLE], 3] = different
     if improved == 0:
         return
     for share in range(improved):
         ant = order[share * ants // improved]
         if not _among(s.searched, s.costs[ant]):
-            cost = improve(s.paths[ant], s.edge_costs, s.node_costs, s.ways, s.near)
+            cost = improve(s.paths[ant], s.edge_costs, s.node_costs, s.open_edges, s.near)
             s.costs[ant] = cost
-            s.searched[(s.clock[CYCLE] * improved + share) % len(s.searched)] = cost
+            s.searched[(s.counters[CYCLE] * improved + share) % len(s.searched)] = cost
     leader = np.argmin(s.costs)
     if not _among(s.searched_wide, s.costs[leader]):
-        cost = improve(s.paths[leader], s.edge_costs, s.node_costs, s.ways, s.wide)
+        cost = improve(s.paths[leader], s.edge_costs, s.node_costs, s.open_edges, s.wide)
         s.costs[leader] = cost
-        s.searched_wide[s.clock[CYCLE] % len(s.searched_wide)] = cost
+        s.searched_wide[s.counters[CYCLE] % len(s.searched_wide)] = cost
 
 
 @njit(cache=True, nogil=True)
-def _mend(s: State) -> None:
-    """Edges have been closed: count again, and look for a way round for the path in question."""
+def _reevaluate(s: State) -> None:
+    """Cost the paths again after edges were closed; local search on the refused candidate."""
     for ant in range(len(s.paths)):
         refused = np.all(s.paths[ant] == s.candidate)
-        s.costs[ant] = path_cost(s.paths[ant], s.edge_costs, s.node_costs, s.ways)
-        if refused and s.costs[ant] == np.inf and s.settings[2] > 0:
-            s.costs[ant] = improve(s.paths[ant], s.edge_costs, s.node_costs, s.ways, s.near)
+        s.costs[ant] = path_cost(s.paths[ant], s.edge_costs, s.node_costs, s.open_edges)
+        if refused and s.costs[ant] == np.inf and s.improved > 0:
+            s.costs[ant] = improve(s.paths[ant], s.edge_costs, s.node_costs, s.open_edges, s.near)
 
 
 @njit(cache=True, nogil=True)
 def _is_proven(path: IntArray, status: States) -> bool:
     free = 0
     for i in range(len(path) - 1):
-        free += status[i, path[i], path[i + 1]] == _FREE
+        free += status[i, path[i], path[i + 1]] == FREE
     return free == len(path) - 1
 
 
 @njit(cache=True, nogil=True)
 def _update_pheromone(s: State) -> None:
     """Let tau sink to max(rho tau, least); one path lays 1 - rho, up to 1 in all."""
-    rho, least, tau, touched = s.settings[0], s.settings[1], s.tau, s.touched
+    rho, least, tau, touched = s.rho, s.least_pheromone, s.tau, s.touched
     for i in range(tau.shape[0]):
         for p in range(tau.shape[1]):
             if touched[i, p]:
                 for k in range(tau.shape[2]):
                     tau[i, p, k] = max(rho * tau[i, p, k], least)
     s.values[LEVEL] = max(rho * s.values[LEVEL], least)
-    every = 2 if s.clock[STALE] > s.settings[3] / 2 else 5
-    chosen = s.restart_path if s.clock[CYCLE] % every == every - 1 else s.candidate
+    every = 2 if s.counters[STALE] > s.patience / 2 else 5
+    chosen = s.restart_path if s.counters[CYCLE] % every == every - 1 else s.candidate
     for i in range(len(chosen) - 1):
         row, head = chosen[i] if s.tau.shape[1] > 1 else 0, chosen[i + 1]
         if not s.touched[i, row]:
@@ -185,7 +197,7 @@ def _update_pheromone(s: State) -> None:
 
 
 @njit(cache=True, nogil=True)
-def settle(s: State) -> None:
+def write_untouched_rows(s: State) -> None:
     """Write the level of untouched rows into tau, for readers; the cycles do so late."""
     for i in range(s.tau.shape[0]):
         for p in range(s.tau.shape[1]):
@@ -199,38 +211,38 @@ def run_cycles(rng: np.random.Generator, until: int, s: State) -> int:
 
     Returns:
         DONE, or PROVE with the path in question in `candidate`: certify it, close what was refused
-        in `ways`, and call again.
+        in `open_edges`, and call again.
     """
-    while s.clock[CYCLE] < until:
-        if s.clock[STAGE] == 0:
+    while s.counters[CYCLE] < until:
+        if s.counters[STAGE] == 0:
             _walk(rng, s)
             s.values[MEAN] = np.mean(s.costs)
             _improve(s)
-            s.clock[STAGE] = 1
+            s.counters[STAGE] = 1
         else:
-            _mend(s)
+            _reevaluate(s)
         leader = np.argmin(s.costs)
         cost = s.costs[leader]
         if cost < np.inf:
             s.candidate[:] = s.paths[leader]
             if not _is_proven(s.candidate, s.status):
                 return PROVE
-        s.clock[STAGE] = 0
-        s.clock[STALE] += 1
+        s.counters[STAGE] = 0
+        s.counters[STALE] += 1
         if cost < s.values[BEST]:
             s.values[BEST] = cost
             s.best_path[:] = s.candidate
         if cost < s.values[SINCE_RESTART] * (1.0 - 1e-12):
             s.values[SINCE_RESTART] = cost
             s.restart_path[:] = s.candidate
-            s.clock[STALE] = 0
-        if s.settings[4] > 0.0 and cost < np.inf:
+            s.counters[STALE] = 0
+        if s.use_pheromone and cost < np.inf:
             _update_pheromone(s)
-        record = s.records[s.clock[CYCLE]]
+        record = s.records[s.counters[CYCLE]]
         record[0], record[1], record[2] = s.values[BEST], cost, s.values[MEAN]
-        s.clock[CYCLE] += 1
-        if s.clock[STALE] >= s.settings[3]:
+        s.counters[CYCLE] += 1
+        if s.counters[STALE] >= s.patience:
             s.touched[:] = False
             s.values[LEVEL], s.values[SINCE_RESTART] = 1.0, np.inf
-            s.clock[STALE] = 0
+            s.counters[STALE] = 0
     return DONE

@@ -1,4 +1,4 @@
-"""Annealing of a path through base offsets and postures by shifts of whole segments; compiled.
+"""Compiled annealing of a path through base offsets and postures by segment shifts.
 
 A shift rotates the rest of the path behind its segment about one axis by one angle. Lengths and the
 attitude at the goal follow from the segment alone, and the angle bounds the change of the
@@ -31,7 +31,7 @@ from ffsr_plan.search.postures.cost_kernels import (
 
 @njit(cache=True, nogil=True)
 def uncosted_path(path: IntArray) -> CostedPath:
-    """A current along a path (m + 1, 2), nothing worked out."""
+    """A path (m + 1, 2) whose costs are not worked out yet."""
     m = len(path) - 1
     return CostedPath(
         path.copy(),
@@ -69,7 +69,7 @@ def trial_cost(
         trial: the new one, of which only the nodes are given; worked out from `first` on, but for
             lengths that do not change.
         first: the first layer that differs.
-        last: the first layer behind these.
+        last: the layer after the last one that differs.
         weight: of a radian by which the goal attitude is missed [m].
         limit: a cost above it is infinite [m].
         workspace: to work in.
@@ -80,12 +80,12 @@ def trial_cost(
         return np.inf
     old, new = current.quats, trial.quats
     spin = angle_to(old[last], new[last])
-    if spin > 0.0:  # what comes behind is turned in the world by one rotation
-        back, turn = np.empty(4), np.empty(4)
+    if spin > 0.0:  # the rest of the path is rotated in the world by one rotation
+        back, change = np.empty(4), np.empty(4)
         back[:3], back[3] = -old[last, :3], old[last, 3]
-        compose(new[last], back, turn)
+        compose(new[last], back, change)
         for i in range(last, m + 1):
-            compose(turn, old[i], new[i])
+            compose(change, old[i], new[i])
     else:
         new[last:] = old[last:]
     total = attitude_cost(grid, new[m], weight)
@@ -95,8 +95,8 @@ def trial_cost(
         total += current.costs[i]
     trial.least[first:last] = 0.0
     for i in range(last, m + 1):
-        change = spin * grid.radii[i, current.nodes[i, 1]]
-        trial.least[i] = least_cost(grid, current.clearances[i], change, i < m)
+        displacement = spin * grid.radii[i, current.nodes[i, 1]]
+        trial.least[i] = least_cost(grid, current.clearances[i], displacement, i < m)
         total += trial.least[i]
     if total > limit:
         return np.inf
@@ -108,7 +108,7 @@ def trial_cost(
 
 @njit(cache=True, nogil=True)
 def adopt(current: CostedPath, trial: CostedPath, first: int, last: int) -> None:
-    """Make the trial the current."""
+    """Make the trial the current path."""
     current.nodes[first:last] = trial.nodes[first:last]
     current.lengths[first - 1 : last] = trial.lengths[first - 1 : last]
     current.quats[first:] = trial.quats[first:]

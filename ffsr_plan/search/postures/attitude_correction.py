@@ -14,9 +14,9 @@ from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import SpaceRobot
 
-_DIFFERENCE = 1e-5
-_ROUNDS = 6
-_CLOSE = 1e-7  # radians
+_DIFFERENCE = 1e-5  # of the finite differences, in units of the displacement
+_ITERATIONS = 6
+_TOLERANCE = 1e-7  # [rad]
 
 
 def corrected(
@@ -27,13 +27,13 @@ def corrected(
     directions: Array,
     held: Flags | None = None,
 ) -> Array | None:
-    """Joint values (m + 1, nd) whose reaction ends at the goal attitude; None if none was found.
+    """Joint values (m + 1, nd) whose reaction ends at the goal attitude; None without convergence.
 
     Args:
         robot: the robot; its joint limits are kept.
         start: (4,) attitude at the beginning (xyzw).
         goal: (4,) attitude to end with.
-        joint_values: (m + 1, nd) corners of a path that ends near it.
+        joint_values: (m + 1, nd) corners of a path whose reaction ends close to it.
         directions: (m + 1, axes, nd) along which each corner may be displaced.
         held: (m + 1,) corners that are to stay where they are; the first and the last do anyway.
     """
@@ -41,15 +41,13 @@ def corrected(
     free = np.ones(directions[1:-1].shape[:2], dtype=np.bool_)
     if held is not None:
         free[held[1:-1]] = False
-    for _ in range(_ROUNDS):
-        increments = Reaction(robot, path).increments
-        chain = [start]
-        for increment in increments:
-            chain.append(rotations.multiply(chain[-1], increment))
-        missed = rotations.log(rotations.multiply(rotations.inverse(chain[-1]), goal))
-        if np.linalg.norm(missed) < _CLOSE:
+    for _ in range(_ITERATIONS):
+        reaction = Reaction.along(robot, path)
+        reached = reaction.attitudes(start)[-1]
+        missed = rotations.log(rotations.multiply(rotations.inverse(reached), goal))
+        if np.linalg.norm(missed) < _TOLERANCE:
             return path
-        slope = _slopes(robot, path, directions, increments)
+        slope = _slopes(robot, path, directions, reaction.increments)
         inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, missed, free)
         if inner is None:
             return None
@@ -62,7 +60,8 @@ def _within_limits(
 ) -> Array | None:
     """The corners (m - 1, nd) after the least displacement that keeps every joint's limits.
 
-    A corner that would pass a limit along an axis is held back there, and the others do its share.
+    A corner that would exceed a limit along an axis is kept at its place along that axis; the other
+    corners take over its part.
     """
     free = free.copy()
     while free.any():
@@ -83,8 +82,8 @@ def _slopes(robot: SpaceRobot, path: Array, directions: Array, increments: Array
     corners = np.repeat(np.arange(1, m), axes)
     moved = path[1:-1, None] + _DIFFERENCE * directions[1:-1]
     moved = moved.reshape(-1, path.shape[1])
-    before = Reaction.of_segments(robot, path[corners - 1], moved - path[corners - 1]).increments
-    behind = Reaction.of_segments(robot, moved, path[corners + 1] - moved).increments
+    before = Reaction(robot, path[corners - 1], moved - path[corners - 1]).increments
+    behind = Reaction(robot, moved, path[corners + 1] - moved).increments
     rest = [rotations.IDENTITY]  # from corner k + 1 to the end, backwards
     for increment in increments[:0:-1]:
         rest.append(rotations.multiply(increment, rest[-1]))
@@ -92,4 +91,4 @@ def _slopes(robot: SpaceRobot, path: Array, directions: Array, increments: Array
     old = rotations.multiply(increments[corners - 1], increments[corners])
     turned = rotations.multiply(rotations.inverse(old), rotations.multiply(before, behind))
     turned = rotations.multiply(rotations.inverse(after), rotations.multiply(turned, after))
-    return np.asarray(rotations.log(turned).T / _DIFFERENCE)
+    return rotations.log(turned).T / _DIFFERENCE

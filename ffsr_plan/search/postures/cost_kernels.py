@@ -58,7 +58,7 @@ class PostureGrid(NamedTuple):
     refused: IntArray
     """(r, 5) refused edges: layer, base offsets and postures at both ends."""
     neighbours: IntArray
-    """(b, j) base offsets beside each, -1 where there is none."""
+    """(b, j) base offsets adjacent to each, -1 where there is none."""
     origin: IntArray
     """(2,) base offset and posture of start and goal."""
     start: Array
@@ -80,7 +80,7 @@ class PostureGrid(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """What a search for the nearest obstacle writes into."""
+    """Buffers of a search for the nearest obstacle."""
 
     frame: Array
     shift: Array
@@ -89,7 +89,7 @@ class Workspace(NamedTuple):
 
 
 class CostedPath(NamedTuple):
-    """A path, and what its cost is made of."""
+    """A path with the terms of its cost."""
 
     nodes: IntArray
     """(m + 1, 2) base offset and posture on each layer."""
@@ -126,7 +126,7 @@ def new_workspace() -> Workspace:
 
 @njit(cache=True, nogil=True)
 def is_free(grid: PostureGrid) -> bool:
-    """Whether there is nothing to keep clear of, or nothing that would have to."""
+    """Whether there are no obstacles, or no shapes that could touch them."""
     return len(grid.obstacles.spheres) == 0 or len(grid.obstacles.kinds) == 0
 
 
@@ -147,7 +147,7 @@ def clearance_at(
         place: (3,) of the base offset.
         center: (3,) of the posture.
         quat: (4,) attitude.
-        workspace: to work in.
+        workspace: buffers.
     """
     x, y, z, w = quat[0], quat[1], quat[2], quat[3]
     r = (
@@ -229,9 +229,9 @@ def attitude_cost(grid: PostureGrid, quat: Array, weight: float) -> float:
 
 @njit(cache=True, nogil=True)
 def take_edges(grid: PostureGrid, path: CostedPath, first: int, last: int) -> bool:
-    """Work out the edges first .. last - 1 of a path; whether all of them are there.
+    """Work out the edges first .. last - 1 of a path; whether all of them exist.
 
-    The attitude on layer `first` is given; lengths and the attitudes behind are filled in.
+    The attitude on layer `first` is given; lengths and later attitudes are filled in.
     """
     nodes, quats, step_rotations, squared_steps = (
         path.nodes,
@@ -261,16 +261,16 @@ def visit(
     limit: float,
     workspace: Workspace,
 ) -> float:
-    """Take the nodes on the layers first .. last - 1 at their attitudes, clearances filled in.
+    """Cost the nodes on the layers first .. last - 1 at their attitudes; fill in clearances.
 
     Args:
         grid: the lattice.
         path: the path, of which `path.least` has already been counted in for these nodes.
         first: the first layer.
-        last: the layer behind the last one.
+        last: the layer after the last one.
         total: cost so far [m].
-        limit: no further than where the cost exceeds it [m].
-        workspace: to work in.
+        limit: stop where the cost exceeds it [m].
+        workspace: buffers.
 
     Returns:
         The total with the nodes' costs in place of the least ones; infinite beyond the limit.
@@ -297,7 +297,7 @@ def visit(
 
 @njit(cache=True, nogil=True)
 def path_cost(grid: PostureGrid, path: CostedPath, weight: float) -> float:
-    """Cost [m] of a path, all of whose entries are worked out; infinite if an edge is not there.
+    """Cost [m] of a path, all of whose entries are worked out; infinite if an edge does not exist.
 
     Args:
         grid: the lattice.

@@ -3,8 +3,8 @@
 The base origin lies inside the robot at any attitude, if it lies in one of the root link's shapes:
 then the clearance of a node is at most the distance of its base origin from the obstacles, and a
 shortest path over base offsets alone with these distances costs no more than any path of the
-lattice. Where a goal attitude is to be reached, no path is shorter than the joint steps that turn
-the base by that much, each at the best rate of all steps.
+lattice. Where a goal attitude is to be reached, no path is shorter than the joint steps that rotate
+the base by that angle, each at the best rate of all steps.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     status = np.zeros((m, count, count), dtype=np.int8)
     edges = base.steps[None] / problem.length_unit
     call(extend, 0, edges, nodes, status, costs, before)
-    return max(float(costs[m, base.origin]), _turning_bound(lattice) / problem.length_unit)
+    return max(float(costs[m, base.origin]), _rotation_bound(lattice) / problem.length_unit)
 
 
 def origin_is_inside(lattice: PostureLattice) -> bool:
@@ -55,8 +55,8 @@ def origin_is_inside(lattice: PostureLattice) -> bool:
     return False
 
 
-def _turning_bound(lattice: PostureLattice) -> float:
-    """Least length [m] of joint steps that can turn the base by what is demanded, less 1 degree."""
+def _rotation_bound(lattice: PostureLattice) -> float:
+    """Least length [m] of joint steps that rotate the base by the angle demanded less 1 degree."""
     problem = lattice.problem
     if not problem.reach_attitude:
         return 0.0

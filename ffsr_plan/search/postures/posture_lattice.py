@@ -1,4 +1,4 @@
-"""The lattice where axes displace the joints: nodes are base offsets times postures.
+"""Lattice with posture axes: its nodes are base offsets times postures.
 
 A node is (layer i, base offset b, posture p). Joints at (i, p) are the nominal ones of the layer
 plus what the posture axes displace them by. From one layer to the next, a posture changes by at
@@ -97,21 +97,21 @@ class PostureLattice:
         m, n, k = len(self.joint_values) - 1, *self.successors.shape
         nominal = self.base.nominal
         still = IDENTITY if nominal.mode.attitude_reacts else rotations.exp(nominal.turn)
-        found = np.tile(still, (layers, n, k, 1))
-        there = np.tile(self.successors >= 0, (layers, 1, 1))
+        result = np.tile(still, (layers, n, k, 1))
+        exists = np.tile(self.successors >= 0, (layers, 1, 1))
         if nominal.mode.attitude_reacts and self.problem.robot.nd:
-            if self.alike:  # the way back, at k - 1 - step, undoes what the way there does
-                there &= np.arange(k) > k // 2
-            i, p, step = np.nonzero(there)
+            if self.alike:  # step k - 1 - step goes back and undoes the rotation
+                exists &= np.arange(k) > k // 2
+            i, p, step = np.nonzero(exists)
             begin, on = self.joint_values[i, p], self.successors[p, step]
             steps = self.joint_values[i + 1, on] - begin
             words = f"the base's reaction to {len(steps)} joint steps, before the search"
             with notify_after(5.0, words):
-                turned = Reaction.of_segments(self.problem.robot, begin, steps).increments
-            found[i, p, step] = turned
+                turned = Reaction(self.problem.robot, begin, steps).increments
+            result[i, p, step] = turned
             if self.alike:
-                found[i, on, k - 1 - step] = rotations.inverse(turned)
-        return np.broadcast_to(found, (m, n, k, 4))
+                result[i, on, k - 1 - step] = rotations.inverse(turned)
+        return np.broadcast_to(result, (m, n, k, 4))
 
     @cached_property
     def squared_steps(self) -> Array:

@@ -1,4 +1,4 @@
-"""Ants among base offsets and postures; compiled."""
+"""Compiled tours of ants through base offsets and postures, and their cost to go."""
 
 from __future__ import annotations
 
@@ -76,10 +76,10 @@ def walk(
     tau_posture: Array,
     path: IntArray,
 ) -> bool:
-    """One ant's path from start to goal; whether it got there.
+    """One ant's path from start to goal; whether it reached the goal.
 
-    A step is chosen with probability tau exp(-(length + cost to go behind it) / detour_scale): the
-    excess over the best step counts, not the length of the step.
+    A step is chosen with probability tau exp(-(length + cost to go from its head) / detour_scale):
+    the excess over the best step counts, not the length of the step.
 
     Args:
         grid: the lattice.

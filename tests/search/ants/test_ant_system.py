@@ -37,7 +37,7 @@ def test_equation_11_the_wheel_is_spun_in_proportion_to_pheromone_and_visibility
 
 
 def test_a_refused_edge_leaves_the_others_in_proportion(point):
-    """Barring an edge and drawing again is the wheel over the allowed edges."""
+    """Barring an edge and drawing again is the roulette over the allowed edges."""
     scene = fp.Scene([[1.5, 0.6, 0.0]], [0.25])  # across some edges of layer 1
     goal = point.configuration((6.0, 0.0, 0.0))
     problem = fp.Problem(point, scene, point.configuration(), goal,

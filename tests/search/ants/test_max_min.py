@@ -16,7 +16,7 @@ from ffsr_plan.lattice.edge_states import REFUSED
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.ants.local_search_kernels import improve, neighbourhood, path_cost
-from ffsr_plan.search.ants.open_edges import close_refused, open_ways
+from ffsr_plan.search.ants.open_edges import close_refused, find_open_edges
 from tests.helpers.brute_force import optimum
 from tests.helpers.builders import random_scene
 
@@ -104,7 +104,7 @@ def test_every_variant_returns_verified_plans(change):
 def test_local_search_never_makes_a_path_worse_and_respects_closed_ways():
     roadmap = Roadmap(random_problem(3, 0.1))
     roadmap.prove_obvious()
-    ways, _ = open_ways(roadmap.admissible, roadmap.status)
+    open_edges, _ = find_open_edges(roadmap.admissible, roadmap.status)
     edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
     table = neighbourhood(roadmap.lattice.indices, wide=False)
     rng = np.random.default_rng(0)
@@ -112,10 +112,10 @@ def test_local_search_never_makes_a_path_worse_and_respects_closed_ways():
     for _ in range(50):
         path = fp.AntSystem(ants=1, cycles=1).search(roadmap.without_edge_states(), rng).path
         trial = path.copy()
-        before = path_cost(trial, edge_costs, node_costs, ways)
-        after = improve(trial, edge_costs, node_costs, ways, table)
+        before = path_cost(trial, edge_costs, node_costs, open_edges)
+        after = improve(trial, edge_costs, node_costs, open_edges, table)
         assert after <= before
-        assert after == pytest.approx(path_cost(trial, edge_costs, node_costs, ways))
+        assert after == pytest.approx(path_cost(trial, edge_costs, node_costs, open_edges))
         assert after == pytest.approx(roadmap.objective(trial), rel=1e-12)
         improved += after < before
     assert improved > 40
@@ -141,17 +141,17 @@ def test_closing_edges_keeps_the_ways_those_of_a_new_start(seed):
     admissible[[0, -1]] = False
     admissible[[0, -1], 2] = True
     status = np.zeros((5, 5, 5), dtype=np.int8)
-    ways, exits = open_ways(admissible, status)
+    open_edges, open_counts = find_open_edges(admissible, status)
     changed = np.zeros((5, 5), dtype=bool)
     for _ in range(12):
-        before = ways.copy()
+        before = open_edges.copy()
         status[tuple(rng.integers(0, 5, 3))] = REFUSED
         for layer in range(5):
-            close_refused(layer, status, ways, exits, changed)
-        fresh, fresh_exits = open_ways(admissible, status)
-        assert np.array_equal(ways, fresh)
-        assert np.array_equal(exits, fresh_exits)
-        assert np.all(changed[np.any(before != ways, axis=2)])
+            close_refused(layer, status, open_edges, open_counts, changed)
+        fresh, fresh_exits = find_open_edges(admissible, status)
+        assert np.array_equal(open_edges, fresh)
+        assert np.array_equal(open_counts, fresh_exits)
+        assert np.all(changed[np.any(before != open_edges, axis=2)])
 
 
 def test_large_lattices_are_solved_by_both_planners():

@@ -134,7 +134,9 @@ def test_postures_in_which_links_touch_are_not_used():
 def test_there_and_back_along_the_same_joint_path_turns_nothing():
     motion = planned(75, 0).motion
     there = motion.joint_values
-    back = Reaction(motion.robot, np.vstack([there, there[-2::-1]])).attitudes(rotations.IDENTITY)
+    back = Reaction.along(motion.robot, np.vstack([there, there[-2::-1]])).attitudes(
+        rotations.IDENTITY
+    )
     assert rotations.angle_between(back[0], back[-1]) < 1e-9
     assert rotations.angle_between(back[0], back[len(there) - 1]) > 1.0
 
@@ -161,7 +163,7 @@ def test_a_goal_that_the_arms_cannot_turn_to_is_refused_with_what_is_missing():
 
 @pytest.mark.parametrize("planner", [fp.LatticeOptimum(), fp.AntSystem()])
 def test_planners_that_need_a_cost_of_nodes_alone_refuse_and_say_why(planner):
-    with pytest.raises(fp.InvalidInput, match=r"max-min-ant-system.*depends on the way"):
+    with pytest.raises(fp.InvalidInput, match=r"posture-annealing.*depends on the path"):
         fp.plan(turning(10), planner)
 
 
@@ -181,7 +183,7 @@ def test_the_correction_closes_a_missed_attitude_and_keeps_the_ends():
     directions = displacements(quick().problem, np.tile(path[0], (len(path), 1)))
     start, goal = rotations.IDENTITY, rotations.from_angles((math.radians(20.7), 0.0, 0.0))
     bent = corrected(robot, start, goal, path, directions)
-    reached = Reaction(robot, bent).attitudes(start)[-1]
+    reached = Reaction.along(robot, bent).attitudes(start)[-1]
     assert rotations.angle_between(reached, goal) < 1e-6
     assert np.array_equal(bent[[0, -1]], path[[0, -1]])
 
@@ -201,7 +203,7 @@ def test_the_correction_keeps_limits_and_held_corners_and_bends_the_others():
         corrected(tight, start, goal, path, directions),
         corrected(tight, start, goal, path, directions, held),
     ):
-        reached = Reaction(robot, bent).attitudes(start)[-1]
+        reached = Reaction.along(robot, bent).attitudes(start)[-1]
         assert rotations.angle_between(reached, goal) < 1e-6
         assert np.all((bent <= tight.upper) & (bent >= tight.lower))
     assert np.array_equal(bent[held], path[held])
@@ -212,7 +214,7 @@ def test_slopes_of_the_correction_equal_finite_differences():
     plan = spatial(30, (0, 0, 1))
     robot, path, h = plan.problem.robot, plan.motion.joint_values, 1e-4
     directions = displacements(plan.problem, np.tile(path[0], (len(path), 1)))
-    slopes = _slopes(robot, path, directions, Reaction(robot, path).increments)
+    slopes = _slopes(robot, path, directions, Reaction.along(robot, path).increments)
     axes = directions.shape[1]
     for column in range(0, slopes.shape[1], 11):
         corner, axis = 1 + column // axes, column % axes
@@ -220,7 +222,7 @@ def test_slopes_of_the_correction_equal_finite_differences():
         for sign in (1.0, -1.0):
             moved = np.array(path)
             moved[corner] += sign * h * directions[corner, axis]
-            ends.append(Reaction(robot, moved).attitudes(rotations.IDENTITY)[-1])
+            ends.append(Reaction.along(robot, moved).attitudes(rotations.IDENTITY)[-1])
         turned = rotations.log(rotations.multiply(rotations.inverse(ends[1]), ends[0])) / (2.0 * h)
         assert slopes[:, column] == pytest.approx(turned, abs=1e-5)
 
@@ -231,7 +233,7 @@ def test_steps_back_undo_steps_there():
     on = lattice.successors[p, step]
     begin = lattice.joint_values[0, p]
     steps = lattice.joint_values[0, on] - begin
-    alone = Reaction.of_segments(lattice.problem.robot, begin, steps).increments
+    alone = Reaction(lattice.problem.robot, begin, steps).increments
     assert np.max(rotations.angle_between(lattice.step_rotations[0, p, step], alone)) < 1e-7
 
 
@@ -247,7 +249,9 @@ def test_a_small_loop_turns_the_base_by_its_area_times_the_curvature():
         middle, (u, v, w) = rng.uniform(-1, 1, 6), rng.normal(size=(3, 6))
         edge = 1e-3
         corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * edge / 2
-        turned = Reaction(robot, middle + corners @ np.array([u, v])).attitudes(rotations.IDENTITY)
+        turned = Reaction.along(robot, middle + corners @ np.array([u, v])).attitudes(
+            rotations.IDENTITY
+        )
         expected = curvatures(robot, middle, (u, v, w))[0]
         assert rotations.log(turned[-1]) / edge**2 == pytest.approx(expected, rel=0.02, abs=2e-3)
 

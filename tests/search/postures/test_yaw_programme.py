@@ -72,7 +72,7 @@ def every_path(lattice):
             there &= (on == lattice.origin) & (b_on == base.origin)
         n, b_on, on = n[there], b_on[there], on[there]
         tail, head = lattice.joint_values[i, p[n]], lattice.joint_values[i + 1, on]
-        turned = Reaction.of_segments(problem.robot, tail, head - tail).increments
+        turned = Reaction(problem.robot, tail, head - tail).increments
         yaw = yaw[n] + 2.0 * np.arctan2(turned[:, 2], turned[:, 3])
         moved = base.offsets[b_on] - base.offsets[b[n]]
         bent = head - tail - np.diff(base.nominal.joint_values[i : i + 2], axis=0)

@@ -1,0 +1,161 @@
+"""Edges of a motion for interval halving: against obstacles, and of links against each other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
+from ffsr_plan.collision.shape_placements import Placements, shape_placements
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.proof.edge_travel import EdgeTravel
+
+
+class NominalPlacements:
+    """Placements of all shapes along the edges of a motion, computed once for each time."""
+
+    def __init__(self, motion: Motion) -> None:
+        self._motion = motion
+        self._known: dict[float, Placements] = {}
+
+    def at(self, time: float) -> Placements:
+        """Placements on every edge at one time; row k belongs to edge k.
+
+        Interval halving needs the same times on many edges, and the other times of the same level
+        of halving next, so all of that level are computed together.
+        """
+        if time not in self._known:
+            times = _of_same_level(time)
+            edges = self._motion.edges
+            q = self._motion.at(np.tile(np.arange(edges), len(times)), np.repeat(times, edges))
+            frames = shape_placements(self._motion.robot, q).frames
+            parts = frames.reshape(len(times), edges, *frames.shape[1:])
+            self._known |= zip(times.tolist(), map(Placements, parts), strict=True)
+        return self._known[time]
+
+
+class ObstacleEdge:
+    """An edge among the obstacles; its parts are the collision shapes.
+
+    Attributes:
+        speed: bound on the travel of any shape per unit of time [m].
+        rounding: length added to every travel bound [m].
+        base_step: (3,) displacement of the base origin over the edge, world axes [m].
+    """
+
+    def __init__(
+        self,
+        query: ObstacleQuery,
+        placements: NominalPlacements,
+        travel: EdgeTravel,
+        layer: int,
+        offsets: tuple[Array, Array],
+        base_step: Array,
+        rounding: float,
+    ) -> None:
+        """An edge whose ends are displaced from the nominal motion.
+
+        Args:
+            query: distances to the obstacles.
+            placements: placements along the nominal motion.
+            travel: travel bounds along the nominal motion.
+            layer: the edge of the nominal motion.
+            offsets: displacement of the base at both ends, (3,) each, world axes [m].
+            base_step: (3,) displacement of the base origin over the edge, world axes [m].
+            rounding: length added to every travel bound [m].
+        """
+        self._query, self._placements, self._travel = query, placements, travel
+        self._layer, self._offsets = layer, offsets
+        self._parts: dict[float, Array] = {}
+        self.base_step, self.rounding = base_step, rounding
+        self.speed = float(np.linalg.norm(base_step) + travel.speeds[layer])
+
+    def offset(self, time: float) -> Array:
+        """(3,) displacement of the base from the nominal motion [m]."""
+        tail, head = self._offsets
+        return (1.0 - time) * tail + time * head
+
+    def clearance(self, time: float) -> float:
+        """Least distance of any shape to any obstacle [m]."""
+        placed, layer = self._placements.at(time), np.array([self._layer])
+        return float(self._query.distances_at(placed, layer, self.offset(time)[None])[0])
+
+    def parts(self, time: float) -> Array:
+        """(g,) lower bound on the distance of each shape to any obstacle [m]."""
+        if time not in self._parts:
+            placed = self._placements.at(time)
+            self._parts[time] = self._query.links_at(placed, self._layer, self.offset(time))
+        return self._parts[time]
+
+    def travel(self, begin: float, end: float) -> Array:
+        """(g,) travel bound of each shape in the world between two times [m]."""
+        return self._travel.bounds(self._layer, begin, end, self.base_step)
+
+
+class SelfCollisionEdge:
+    """An edge of the joints alone; its parts are the pairs of links that must not touch.
+
+    Attributes:
+        speed: bound on the travel of both shapes of any pair together per unit of time [m].
+        rounding: length added to every travel bound [m].
+    """
+
+    def __init__(
+        self, query: SelfQuery, motion: Motion, travel: EdgeTravel, layer: int, rounding: float
+    ) -> None:
+        """An edge of a motion.
+
+        Args:
+            query: distances between links.
+            motion: the motion.
+            travel: travel bounds along it.
+            layer: the edge.
+            rounding: length added to every travel bound [m].
+        """
+        self._query, self._motion, self._travel, self._layer = query, motion, travel, layer
+        self._parts: dict[float, Array] = {}
+        self.rounding = rounding
+        self.speed = 2.0 * float(travel.speeds_in_base[layer])
+
+    def clearance(self, time: float) -> float:
+        """Least distance of any pair [m]."""
+        return self._query.distance(joint_configuration(self._motion, self._layer, time))
+
+    def parts(self, time: float) -> Array:
+        """(p,) distance of each pair [m]."""
+        if time not in self._parts:
+            q = joint_configuration(self._motion, self._layer, time)
+            self._parts[time] = self._query.distances(q)
+        return self._parts[time]
+
+    def travel(self, begin: float, end: float) -> Array:
+        """(p,) sum of both travel bounds of each pair in the base frame [m]."""
+        each = self._travel.bounds_in_base(self._layer, begin, end)
+        both: Array = each[self._query.pairs].sum(axis=1)
+        return both
+
+
+def joint_configuration(motion: Motion, layer: int, time: float) -> Array:
+    """The joints at a time on an edge, with the base at the origin.
+
+    Args:
+        motion: the motion.
+        layer: the edge.
+        time: the time on it, in [0, 1].
+
+    Returns:
+        (nq,) configuration.
+    """
+    begin, end = motion.joint_values[[layer, layer + (time > 0.0)]]
+    joints = (1.0 - time) * begin + time * end
+    return motion.robot.assemble(np.zeros(3), rotations.IDENTITY, joints)
+
+
+def _of_same_level(time: float) -> Array:
+    """The dyadic times on the same level of halving as `time`; below 1/16 `time` alone."""
+    for parts in (1, 2, 4, 8, 16):
+        if (time * parts).is_integer():
+            step = 1.0 / parts
+            return np.arange(step, 1.0, 2.0 * step) if parts > 1 else np.array([time])
+    return np.array([time])
