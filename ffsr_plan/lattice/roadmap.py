@@ -9,7 +9,6 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
 from ffsr_plan.core.errors import InvalidInput, NoPath
-from ffsr_plan.core.kernels import call
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
@@ -210,4 +209,4 @@ def rule_out(
     from ffsr_plan.lattice.refusal_kernel import refuse_near
 
     met = (1.0 - t) * tails[edge[0]] + t * heads[edge[1]]
-    call(refuse_near, status, tails, heads, t, met, depth)
+    refuse_near(status, tails, heads, t, met, depth)

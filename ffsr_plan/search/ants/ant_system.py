@@ -10,7 +10,6 @@ import numpy as np
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.checks import number, whole_number
 from ffsr_plan.core.errors import InternalError, PlanningError
-from ffsr_plan.core.kernels import call
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
@@ -149,11 +148,20 @@ class Walk:
         self._changed[:] = True
         ant, layer = 0, -1
         while True:
-            ant, layer = call(
-                walk, self._rng, tau, self._alpha, self._log_visibility, self._open_edges,
-                self._open_counts, roadmap.status, self._roulettes, self._changed,
-                paths, ant, layer,
-            )  # fmt: skip
+            ant, layer = walk(
+                self._rng,
+                tau,
+                self._alpha,
+                self._log_visibility,
+                self._open_edges,
+                self._open_counts,
+                roadmap.status,
+                self._roulettes,
+                self._changed,
+                paths,
+                ant,
+                layer,
+            )
             if ant == len(paths):
                 return paths
             if ant < 0:
