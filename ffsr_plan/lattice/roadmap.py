@@ -177,14 +177,14 @@ class Roadmap:
 
     def _closing(self, layer: int) -> tuple[int | str, ...]:
         """What blocks the edges of a layer that were looked at, and the nodes they lead to."""
-        offsets, names = self.lattice.offsets, set[int | str]()
+        offsets, nearest = self.lattice.offsets, []
         for (i, tail, head), verdict in self._verdicts.items():
             if i == layer and not verdict.free:
-                near = self.prover.nearest(i, offsets[tail], offsets[head], verdict.time)
-                names.add(near.other)
+                nearest.append(self.prover.nearest(i, offsets[tail], offsets[head], verdict.time))
         if layer + 1 < self.lattice.divisions:
             for at in offsets[~self.admissible[layer + 1]]:
-                names.add(self.prover.nearest(layer + 1, at, at, 0.0).other)
+                nearest.append(self.prover.nearest(layer + 1, at, at, 0.0))
+        names = {pair.obstacle for pair in nearest if pair.obstacle is not None}
         return tuple(sorted(names, key=lambda name: (isinstance(name, str), name)))
 
 

@@ -133,7 +133,7 @@ def inverse_kinematics(
         near = touched or touches(q)
         if near is None:
             return frozen(q)
-        raise GoalInCollision(near.link, near.other, -near.distance)
+        raise GoalInCollision(near.link, near.obstacle, -near.distance)
     turned = None if attitude is None else float(np.linalg.norm(rest[3:]))
     raise PoseOutOfReach(frame, float(np.linalg.norm(rest[:3])), turned, frozen(q))
 
