@@ -99,7 +99,7 @@ def inverse_kinematics(
         contact = collision or collides(q)
         if contact is None:
             return frozen(q)
-        raise GoalInCollision(contact.link, contact.other, -contact.distance)
+        raise GoalInCollision(contact.link, contact.obstacle, -contact.distance)
     rotation_error = None if attitude is None else float(np.linalg.norm(rest[3:]))
     raise PoseOutOfReach(frame, float(np.linalg.norm(rest[:3])), rotation_error, frozen(q))
 
