@@ -38,7 +38,7 @@ def path_figure(plan: PlanData, silhouettes: int = 9, axes: Axes | None = None) 
     figure, axes = _axes(axes, 9.0, 4.6)
     view, scene = view_axes(plan.problem)[:2], plan.problem.scene
     track = motion_frames(plan.problem.robot, plan.at(np.linspace(0.0, 1.0, _SAMPLES)))
-    solid = drawn_solid(scene, track.placements.positions)
+    solid = drawn_solid(scene, track.bounding_spheres()[0])
     _draw_obstacles(axes, plan, view, solid)
     _draw_trails(axes, plan, view)
     _draw_silhouettes(axes, plan, silhouettes)

@@ -7,8 +7,6 @@ import math
 import time
 from functools import cache
 
-import numpy as np
-
 from ffsr_plan.core.checks import number, truth
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display.browser import in_notebook, open_in_browser
@@ -166,10 +164,10 @@ def _page(lattice: LayeredLattice, title: str) -> str:
     problem, scene = lattice.problem, lattice.problem.scene
     straight = lattice.nominal.configurations()
     frames = motion_frames(problem.robot, straight)
-    positions = np.concatenate([frames.origins[:, :1], frames.placements.positions], axis=1)
+    centers, radii = frames.bounding_spheres()
     corners = 0.5 * lattice.offsets[[0, lattice.origin, -1]]  # few ants go farther out
-    view = set_up(viewer, problem, positions + corners[:, None, None])
-    add_obstacles(viewer["obstacles"], scene, drawn_solid(scene, positions))
+    view = set_up(viewer, problem, centers + corners[:, None, None], radii)
+    add_obstacles(viewer["obstacles"], scene, drawn_solid(scene, centers))
     goal = problem.goal if problem.reach_attitude else straight[-1]
     add_ends(viewer, problem.robot, problem.start, goal)
     data = {

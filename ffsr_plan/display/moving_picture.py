@@ -185,7 +185,7 @@ def _figure(scene: _Scene, width: int) -> tuple[Figure, Axes, Axes, Axes]:
 def _extent(scene: _Scene) -> tuple[Array, Array]:
     """Lower left and upper right corner (2,) of what is shown [m]."""
     obstacles, view = scene.plan.problem.scene, scene.axes[:2]
-    solid = drawn_solid(obstacles, scene.frames.placements.positions)
+    solid = drawn_solid(obstacles, scene.frames.bounding_spheres()[0])
     points = [outline.polygon for robot in scene.robot for outline in robot]
     for sign in (-1.0, 1.0):
         points.append(obstacles.centers[solid] @ view.T + sign * obstacles.radii[solid, None])
@@ -233,7 +233,7 @@ def _draw_obstacles(axes: Axes, scene: _Scene) -> None:
     from matplotlib.patches import Circle
 
     obstacles = scene.plan.problem.scene
-    solid = drawn_solid(obstacles, scene.frames.placements.positions)
+    solid = drawn_solid(obstacles, scene.frames.bounding_spheres()[0])
     local = obstacles.centers @ scene.axes.T
     least, ball = scene.plan.certificate.least_clearance, _shaded_ball()
     heights = np.append(local[:, 2], scene.frames.origins[:, 0] @ scene.axes[2])

@@ -51,9 +51,9 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
     problem, scene = plan.problem, plan.problem.scene
     samples = problem.lattice.divisions * _FRAMES_PER_EDGE + 1
     frames = motion_frames(problem.robot, plan.at(np.linspace(0.0, 1.0, samples)))
-    positions = np.concatenate([frames.origins[:, :1], frames.placements.positions], axis=1)
-    view = set_up(viewer, problem, positions)
-    add_obstacles(viewer["obstacles"], scene, drawn_solid(scene, positions))
+    centers, radii = frames.bounding_spheres()
+    view = set_up(viewer, problem, centers, radii)
+    add_obstacles(viewer["obstacles"], scene, drawn_solid(scene, centers))
     add_ends(viewer, problem.robot, frames.configurations[0], frames.configurations[-1])
     _add_tracks(viewer, plan, frames)
     _animate(viewer, frames)

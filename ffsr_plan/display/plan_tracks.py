@@ -35,6 +35,15 @@ class MotionFrames(NamedTuple):
     origins: Array
     placements: Placements
 
+    def bounding_spheres(self) -> tuple[Array, Array]:
+        """Spheres around the base origin and around each of the g collision shapes.
+
+        Returns:
+            Centres (N, g + 1, 3) in the world [m] and radii (g + 1,) [m], that of the origin zero.
+        """
+        centers = np.concatenate([self.origins[:, :1], self.placements.positions], axis=1)
+        return centers, np.append(0.0, np.linalg.norm(self.robot.primitives.sizes, axis=1))
+
     def tip_tracks(self) -> dict[str, Array]:
         """Tracks (N, 3) of the tip of each arm in the world [m], by the name of its last joint.
 

@@ -20,13 +20,15 @@ START, GOAL, _OBSTACLE, _FAINT = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
 _GLOW = np.array([(0.14, 0.10, 0.29), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
 
 
-def set_up(viewer: MeshcatNode, problem: Problem, positions: Array) -> dict[str, float]:
+def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) -> dict[str, float]:
     """Set light and background, and rotate the scene so that the path runs from left to right.
 
     Args:
         viewer: meshcat's root.
         problem: what is shown.
-        positions: (..., 3) points of the robot in the world [m] that the camera has to see.
+        centers: (..., g, 3) centres of spheres around the robot in the world [m], all of which the
+            camera has to see.
+        radii: (g,) their radii [m].
 
     Returns:
         Width and height of the scene [m], field of view [degrees] and elevation of the camera
@@ -42,15 +44,17 @@ def set_up(viewer: MeshcatNode, problem: Problem, positions: Array) -> dict[str,
     viewer["/Cameras/default/rotated/<object>"].set_property("fov", fov)
     axes = view_axes(problem)
     scene = problem.scene
-    points = [positions.reshape(-1, 3) @ axes.T]
-    points += [scene.centers @ axes.T + s * scene.radii[:, None] for s in (-1.0, 1.0)]
+    points: list[Array] = []
+    for sign in (-1.0, 1.0):
+        points.append((centers @ axes.T + sign * radii[:, None]).reshape(-1, 3))
+        points.append(scene.centers @ axes.T + sign * scene.radii[:, None])
     cloud = np.vstack(points)
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     root = np.eye(4)
     root[:3, :3] = axes
     root[:3, 3] = -0.5 * (low + high)
     viewer.set_transform(root)
-    margin = 0.8  # the links extend beyond their middles [m]
+    margin = 0.8  # around the scene [m]
     width, height = high[0] - low[0] + margin, high[1] - low[1] + margin
     return {"width": width, "height": height, "fov": fov, "elevation": math.radians(62.0)}
 

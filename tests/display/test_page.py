@@ -104,7 +104,7 @@ def test_thousands_of_spheres_need_few_triangles():
     plan = fp.plan(fp.load_scenario("debris"), fp.LatticeOptimum(), refine=False)
     scene = plan.problem.scene
     frames = motion_frames(plan.problem.robot, plan.at(np.linspace(0.0, 1.0, 321)))
-    near = near_track(scene, frames.placements.positions, 0.8)
+    near = near_track(scene, frames.bounding_spheres()[0], 0.8)
     text = re.search(r'"commands": (\[.*?\])', page(plan), flags=re.S)[1]
     commands = [umsgpack.unpackb(base64.b64decode(c)) for c in json.loads(text)]
     drawn = {
