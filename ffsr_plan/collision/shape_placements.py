@@ -7,10 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.robots.kinematics import turned
 from ffsr_plan.robots.robot import SpaceRobot
-from ffsr_plan.scene.scene import Scene
 
 
 class Placements(NamedTuple):
@@ -57,21 +56,3 @@ def shape_placements(robot: SpaceRobot, configurations: Array) -> Placements:
             axis=2,
         )
     )
-
-
-def near_track(scene: Scene, positions: Array, within: float) -> Flags:
-    """Which spheres are close to a track; for pictures.
-
-    Args:
-        scene: N spheres.
-        positions: (..., 3) points of the track, world [m].
-        within: greatest distance from a point to the surface of a sphere [m].
-
-    Returns:
-        (N,) booleans.
-    """
-    track = positions.reshape(-1, 3)
-    near = np.zeros(len(scene), dtype=bool)
-    for k, (center, radius) in enumerate(zip(scene.centers, scene.radii, strict=True)):
-        near[k] = np.any(np.linalg.norm(track - center, axis=1) < within + radius)
-    return near
