@@ -1,4 +1,4 @@
-"""The documentation says what is so: its code runs, prints what it shows, and has every name."""
+"""Pages of the documentation: code, output, scenarios, links and the list of public names."""
 
 import ast
 import contextlib
@@ -16,21 +16,22 @@ from ffsr_plan.display.page_server import PageServer
 from ffsr_plan.scenario_files.scenario import ScenarioFile
 from tests.helpers.documentation_pages import PAGES, ROOT, blocks, title
 
+SLOW_PAGES = ("command_line.md", "planning.md")
 _LINK = re.compile(r"\]\((?!https?://|#)(?P<path>[^)#\s]+)(?:#[^)]*)?\)")
 
 
 def with_blocks(*kinds):
-    """Pages that have such blocks; those of the README plan the longest."""
+    """Pages that have such blocks; the commands of one page plan all bundled scenarios."""
     return [
-        pytest.param(page, id=title(page), marks=[pytest.mark.slow] * (page.name == "README.md"))
+        pytest.param(page, id=title(page), marks=[pytest.mark.slow] * (page.name in SLOW_PAGES))
         for page in PAGES
         if blocks(page, *kinds)
     ]
 
 
 @pytest.fixture(autouse=True)
-def nobody_looks(monkeypatch):
-    """No browser opens, and pages are not waited for."""
+def no_browser(monkeypatch):
+    """No browser opens, and served pages stop at once."""
 
     def none():
         raise webbrowser.Error
@@ -40,7 +41,7 @@ def nobody_looks(monkeypatch):
 
 
 @pytest.mark.parametrize("page", with_blocks("python"))
-def test_the_code_on_a_page_runs_and_prints_what_stands_under_it(page, tmp_path, monkeypatch):
+def test_code_on_a_page_runs_and_prints_the_output_below_it(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names = {}
     for block in blocks(page, "python"):
@@ -91,27 +92,27 @@ TABLES = {
 }
 
 
-def test_every_public_name_stands_in_the_reference_once():
+def test_every_public_name_is_in_the_reference_once():
     text = "".join(page.read_text() for page in (ROOT / "docs/api").glob("*.md"))
     entries = re.findall(r"^::: ffsr_plan\.(\w+)$", text, re.M)
     assert sorted(set(entries) & set(fp.__all__)) == sorted(fp.__all__)
     assert len(set(entries)) == len(entries)
 
 
-def test_every_public_name_says_what_it_is():
+def test_every_public_name_has_a_docstring():
     for name in fp.__all__:
         assert (getattr(fp, name).__doc__ or "").strip(), name
 
 
 @pytest.mark.parametrize("page", [pytest.param(page, id=title(page)) for page in PAGES])
-def test_links_between_files_lead_somewhere_in_the_repository_too(page):
+def test_links_between_files_exist_in_the_repository(page):
     for link in _LINK.finditer(page.read_text(encoding="utf-8")):
         target = (page.parent / link["path"]).resolve()
         assert target.is_relative_to(ROOT), link[0]
         assert target.exists(), link[0]
 
 
-def test_python_that_is_shown_but_not_run_is_at_least_python():
+def test_python_that_is_not_run_can_be_parsed():
     for page in PAGES:
         for block in blocks(page, "py"):
             ast.parse(block.text)
@@ -124,3 +125,8 @@ def test_every_benchmark_table_is_listed_with_its_command():
             assert re.search(rf"`python -m benchmarks\.[\w.]+`.*\]\({table.name}\)", index), (
                 table.name
             )
+
+
+@pytest.mark.parametrize(("page", "lines"), [("README.md", 150), ("CONTRIBUTING.md", 80)])
+def test_pages_for_newcomers_stay_short(page, lines):
+    assert len((ROOT / page).read_text(encoding="utf-8").splitlines()) <= lines
