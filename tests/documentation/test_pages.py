@@ -3,6 +3,7 @@
 import ast
 import contextlib
 import io
+import json
 import re
 import shlex
 import webbrowser
@@ -13,7 +14,6 @@ from typer.testing import CliRunner
 import ffsr_plan as fp
 from ffsr_plan.cli import app
 from ffsr_plan.display.page_server import PageServer
-from ffsr_plan.scenario_files.scenario import ScenarioFile
 from tests.helpers.documentation_pages import PAGES, ROOT, blocks, title
 
 SLOW_PAGES = ("command_line.md", "planning.md")
@@ -76,20 +76,20 @@ def test_the_table_of_scenario_keys_has_all_of_them():
     text = (ROOT / "docs/howto/scene.md").read_text().split("### All keys")[1]
     rows = [line.split("|")[2] for line in text.splitlines() if line.startswith("|")]
     listed = {key for row in rows for key in re.findall(r"`(\w+)`", row)}
-    known = {"title"}
-    for name, field in ScenarioFile.model_fields.items():
-        if name not in ("title", "planner"):
-            (table,) = {*getattr(field.annotation, "__args__", ()), field.annotation} & TABLES
-            known |= set(table.model_fields)
-    assert listed == known | {"name", "seed", "refine"}  # a planner's own are listed with it
+    schema = json.loads(CliRunner().invoke(app, ["schema"]).stdout)
+    known = {"title", "name", "seed", "refine"}  # the settings of planners are listed elsewhere
+    for key, value in schema["properties"].items():
+        if key != "planner":
+            known |= {name for table in tables(value, schema) for name in table["properties"]}
+    assert listed == known
 
 
-TABLES = {
-    inner
-    for field in ScenarioFile.model_fields.values()
-    for inner in (field.annotation, *getattr(field.annotation, "__args__", ()))
-    if hasattr(inner, "model_fields")
-}
+def tables(value, schema):
+    """The tables that a value of a JSON schema may be, or that its items may be."""
+    if "$ref" in value:
+        return [schema["$defs"][value["$ref"].rpartition("/")[2]]]
+    options = value.get("anyOf", []) + value.get("oneOf", []) + [value.get("items", {})]
+    return [table for option in options if option for table in tables(option, schema)]
 
 
 def test_every_public_name_is_in_the_reference_once():
