@@ -16,7 +16,7 @@ from ffsr_plan.cli import app
 from ffsr_plan.display.page_server import PageServer
 from tests.helpers.documentation_pages import PAGES, ROOT, blocks, title
 
-SLOW_PAGES = ("command_line.md", "planning.md")
+SLOW_PAGES = ("command_line.md", "manipulator.md", "planning.md")
 _LINK = re.compile(r"\]\((?!https?://|#)(?P<path>[^)#\s]+)(?:#[^)]*)?\)")
 
 
