@@ -24,7 +24,8 @@ from ffsr_plan.plans.planners import PLANNERS
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import Containers
-from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
+from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.records import History, Trails
 
