@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 import ffsr_plan as fp
 from ffsr_plan.cli import app
 from ffsr_plan.display.page_server import PageServer
-from ffsr_plan.scenario_files.scenario import ScenarioFile
+from ffsr_plan.scenario_files.scenario_tables import schema
 from tests.helpers.documentation_pages import PAGES, ROOT, blocks, title
 
 _LINK = re.compile(r"\]\((?!https?://|#)(?P<path>[^)#\s]+)(?:#[^)]*)?\)")
@@ -75,20 +75,19 @@ def test_the_table_of_scenario_keys_has_all_of_them():
     text = (ROOT / "docs/howto/scene.md").read_text().split("### All keys")[1]
     rows = [line.split("|")[2] for line in text.splitlines() if line.startswith("|")]
     listed = {key for row in rows for key in re.findall(r"`(\w+)`", row)}
-    known = {"title"}
-    for name, field in ScenarioFile.model_fields.items():
-        if name not in ("title", "planner"):
-            (table,) = {*getattr(field.annotation, "__args__", ()), field.annotation} & TABLES
-            known |= set(table.model_fields)
-    assert listed == known | {"name", "seed", "refine"}  # a planner's own are listed with it
+    scenario = schema()
+    tables = {name: entry for name, entry in scenario["properties"].items() if name != "planner"}
+    known = {key for entry in tables.values() for key in keys_of(entry, scenario["$defs"])}
+    assert listed == known | {"title", "name", "seed", "refine"}  # a planner's own are listed there
 
 
-TABLES = {
-    inner
-    for field in ScenarioFile.model_fields.values()
-    for inner in (field.annotation, *getattr(field.annotation, "__args__", ()))
-    if hasattr(inner, "model_fields")
-}
+def keys_of(entry, definitions):
+    """Keys of the tables that an entry of a JSON Schema refers to, not of those within them."""
+    inner = [*entry.get("anyOf", []), *([entry["items"]] if "items" in entry else [])]
+    keys = {key for each in inner for key in keys_of(each, definitions)}
+    if "$ref" in entry:
+        keys |= set(definitions[entry["$ref"].rpartition("/")[2]]["properties"])
+    return keys
 
 
 def test_every_public_name_stands_in_the_reference_once():
