@@ -1,4 +1,7 @@
-"""Run every notebook from top to bottom: `python -m tools.run_notebooks`. Nothing is saved."""
+"""Run every notebook from top to bottom, without saving.
+
+Usage: `python -m tools.run_notebooks`.
+"""
 
 import sys
 import time

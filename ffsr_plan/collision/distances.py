@@ -36,11 +36,6 @@ class Nearest(NamedTuple):
     link: str
     obstacle: int | str | None
 
-    @property
-    def other(self) -> int | str:
-        """Former name of `obstacle`; empty in an empty scene."""
-        return "" if self.obstacle is None else self.obstacle
-
 
 class ObstacleQuery:
     """Distances of the links to the spheres of a scene.

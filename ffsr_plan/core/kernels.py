@@ -11,7 +11,6 @@ from typing import Any, Literal, TypeVar, cast
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 _NOTICE = "compiling numerical kernels, once after an installation (some ten seconds in all)"
-_COMPILATION_DELAY = 1.5  # [s] after which `call` shows the notice; loading from disk is faster
 
 
 class Kernel:
@@ -96,14 +95,6 @@ def _install_notice() -> None:
             pass
 
     event.register("numba:compile", Notice())  # type: ignore[no-untyped-call]
-
-
-def call(function: Callable[..., Any], *arguments: object) -> Any:  # noqa: ANN401
-    """Call a numba dispatcher, with a notice if its compilation takes long; see `kernel`."""
-    if getattr(function, "overloads", True):
-        return function(*arguments)
-    with notify_after(_COMPILATION_DELAY, "compiling, once after an installation"):
-        return function(*arguments)
 
 
 @contextmanager

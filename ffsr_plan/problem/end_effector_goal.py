@@ -156,7 +156,7 @@ def _solution(
         contact = collision or collides(q)
         if contact is None:
             return frozen(q)
-        raise GoalInCollision(contact.link, contact.other, -contact.distance)
+        raise GoalInCollision(contact.link, contact.obstacle, -contact.distance)
     rotation_error = float(np.linalg.norm(rest[3:])) if len(rest) > 3 else None
     raise PoseOutOfReach(frame, float(np.linalg.norm(rest[:3])), rotation_error, frozen(q))
 

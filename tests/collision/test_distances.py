@@ -33,7 +33,7 @@ def test_clearance_equals_the_closed_form_for_spheres_and_boxes(seed):
 
 
 @given(seeds)
-def test_moving_an_obstacle_changes_the_clearance_by_no_more(seed):
+def test_clearance_changes_by_at_most_the_obstacles_motion(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     scene = random_scene(rng, count=1, low=-2, high=2)
     q = random_configuration(robot, rng)
@@ -58,7 +58,7 @@ def test_clearance_is_the_least_over_obstacles(seed):
 
 
 @given(seeds)
-def test_clearance_does_not_see_where_the_world_is(seed):
+def test_clearance_is_invariant_under_translation(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     scene = random_scene(rng, low=-2, high=2)
     q = random_configuration(robot, rng)

@@ -6,9 +6,7 @@ import sys
 import threading
 import time
 
-import pytest
-
-from ffsr_plan.core.kernels import call, inlined_kernel, kernel, notify_after
+from ffsr_plan.core.kernels import inlined_kernel, kernel, notify_after
 
 
 @inlined_kernel
@@ -104,8 +102,3 @@ def test_a_notice_is_shown_after_a_while(capfd):
     with notify_after(60.0, "solving"):
         pass
     assert capfd.readouterr().err == ""
-
-
-@pytest.mark.parametrize("function", [incremented, doubled.py_func])
-def test_call_takes_kernels_and_plain_functions(function):
-    assert call(function, 1.5) in (4.0, 3.0)

@@ -34,7 +34,7 @@ def test_table_1_the_urdf_and_the_model_agree(robot):
     assert axes == {"JointModelRZ"}
 
 
-def test_the_right_first_link_has_its_left_twins_inertia_not_the_misprint():
+def test_the_misprinted_inertia_is_corrected():
     first = make_planar_dual_arm.ARM[0]
     assert first.inertia == pytest.approx(first.mass * first.length**2 / 12, abs=5e-6)
 
@@ -45,7 +45,7 @@ def test_the_bundled_urdf_is_what_the_table_builds(tmp_path):
     assert (tmp_path / "made.urdf").read_text() == bundled.read_text()
 
 
-def test_a_model_without_free_flyer_would_lose_the_base_so_the_mass_is_checked(robot):
+def test_the_mass_includes_the_base(robot):
     total = make_planar_dual_arm.BASE.mass + 2 * sum(body.mass for body in make_planar_dual_arm.ARM)
     assert sum(i.mass for i in robot.model.inertias) == pytest.approx(total)
 

@@ -30,7 +30,7 @@ def test_the_bundled_files_are_what_the_functions_build(written, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_links_keep_apart_in_every_named_posture_and_with_all_joints_at_zero(name):
+def test_links_do_not_touch_in_any_posture(name):
     robot = fp.load_robot(name)
     query = SelfQuery(robot)
     assert {"stowed", "reach"} <= set(robot.postures)
@@ -110,7 +110,7 @@ def test_summaries_list_joints_mass_and_postures():
     assert summaries["satellite_ur5"].mass == pytest.approx(200 + 2 * 12 + 3 + 20.9939, abs=1e-9)
 
 
-def test_small_loops_of_the_spatial_arms_turn_the_base_about_three_axes():
+def test_small_joint_loops_rotate_the_base_about_three_axes():
     robot = fp.load_robot("spatial_dual_arm")
     rest = np.array([robot.postures["rest"][name] for name in robot.joint_names])
     ways = [[way.get(name, 0.0) for name in robot.joint_names] for way in make_satellites.TURNING]

@@ -24,9 +24,12 @@ from tests.helpers.builders import (
 )
 
 BUS = fp.Bus(
-    (1.0, 0.8, 1.2), 150.0, inertia=(20.0, 25.0, 30.0), center_of_mass=(0.02, -0.01, 0.05),
+    (1.0, 0.8, 1.2),
+    150.0,
+    inertia=(20.0, 25.0, 30.0),
+    center_of_mass=(0.02, -0.01, 0.05),
     panels=[fp.Panel((0.7, 2.0, 0.02), (0.0, 1.5, 0.1), 9.0, (0.3, -0.2, 0.1))],
-)  # fmt: skip
+)
 FINGERS = {"panda_finger_joint1": 0.03}
 FOUR = [
     fp.Mount("panda", (0.5, 0.1, 0.2), (0.4, 1.2, -0.7), "panda_", FINGERS),
@@ -186,8 +189,12 @@ def test_mujoco_compiles_the_same_robot_from_the_file(case, saved, seed):
     values = draw(robot, seed)
     poses, masses = expected(mounts, values)
     root = ElementTree.parse(saved).getroot()
-    settings = {"fusestatic": "false", "balanceinertia": "false", "boundmass": "0",
-                "boundinertia": "0"}  # fmt: skip
+    settings = {
+        "fusestatic": "false",
+        "balanceinertia": "false",
+        "boundmass": "0",
+        "boundinertia": "0",
+    }
     ElementTree.SubElement(ElementTree.SubElement(root, "mujoco"), "compiler", settings)
     spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
     spec.worldbody.first_body().add_freejoint()
@@ -210,7 +217,7 @@ def test_mujoco_compiles_the_same_robot_from_the_file(case, saved, seed):
             close(axes @ np.diag(model.body_inertia[k]) @ axes.T, tensor)
 
 
-def test_mujoco_makes_up_no_mass_for_shapes_of_links_without(tmp_path):
+def test_mujoco_invents_no_mass_for_massless_links(tmp_path):
     mujoco = pytest.importorskip("mujoco", minversion="4.0")
     path = tmp_path / "arm.urdf"
     path.write_text(
@@ -238,7 +245,7 @@ def test_the_saved_robot_loads_again_as_the_same_robot(case, saved):
     assert again.postures == robot.postures
 
 
-def test_the_connection_of_a_composed_robot_keeps_the_engines_angular_momentum_zero(case):
+def test_the_connection_keeps_mujocos_angular_momentum_zero(case):
     mujoco = pytest.importorskip("mujoco", minversion="4.0")
     from tests.helpers.mujoco_flight import mujoco_model
 
@@ -290,14 +297,16 @@ def test_pairs_that_an_arms_srdf_exempts_stay_exempt_under_its_prefix(case):
         assert ("panda_panda_link5", "panda_panda_link7") in robot.disabled_pairs
 
 
-def test_postures_and_exempt_links_of_a_users_own_are_in_the_srdf(random_arm, tmp_path):
+def test_postures_and_exempt_links_are_in_the_srdf(random_arm, tmp_path):
     (tmp_path / "arm.srdf").write_text(
         "<robot name='a'><disable_collisions link1='arm0_0' link2='arm1_0'/></robot>"
     )
     robot = fp.compose(
-        BUS, [fp.Mount(random_arm, prefix="a_", srdf=tmp_path / "arm.srdf")],
-        postures={"folded": {"a_j0_0": 0.25}}, may_touch=[("bus", "a_arm0_0")],
-    )  # fmt: skip
+        BUS,
+        [fp.Mount(random_arm, prefix="a_", srdf=tmp_path / "arm.srdf")],
+        postures={"folded": {"a_j0_0": 0.25}},
+        may_touch=[("bus", "a_arm0_0")],
+    )
     assert robot.postures == {"folded": {"a_j0_0": 0.25}}
     assert robot.disabled_pairs == (("a_arm0_0", "a_arm1_0"), ("a_arm0_0", "bus"))
 
@@ -312,7 +321,7 @@ def test_meshes_are_kept_by_absolute_path_when_asked_for(tmp_path):
     assert robot.visual_model.ngeoms == 8  # the bus and the arm's seven pictures
 
 
-def test_capsules_and_cylinders_stay_what_they_are(tmp_path):
+def test_capsules_and_cylinders_are_kept(tmp_path):
     heavy = inertial(1.0, (0.1, 0.1, 0.1))
     path = tmp_path / "arm.urdf"
     path.write_text(
@@ -364,7 +373,7 @@ def with_finger(**mimic):
     )
 
 
-def test_a_locked_joint_holds_its_followers_at_what_they_make_of_it(tmp_path):
+def test_a_locked_joint_fixes_the_joints_that_mimic_it(tmp_path):
     path = tmp_path / "arm.urdf"
     path.write_text(with_finger(joint="slider", multiplier=-0.5, offset=0.03))
     locked = {"slider": 0.1, "hinge": 0.7}
@@ -400,7 +409,7 @@ def test_joints_that_cannot_be_locked_or_followed_are_named(tmp_path, mimic, loc
         fp.compose(fp.Bus((1, 1, 1), 10.0), [fp.Mount(path, locked=locked)])
 
 
-def test_the_pandas_fingers_ask_to_be_locked():
+def test_the_pandas_fingers_have_to_be_locked():
     with pytest.raises(fp.InvalidInput, match=r"lock it with locked=\{'panda_finger_joint1'"):
         fp.compose(BUS, [fp.Mount("panda")])
 
@@ -440,7 +449,7 @@ def test_the_pandas_fingers_ask_to_be_locked():
         (lambda: fp.Panel((1, 1, 0.1), (0, 0, 0), -1.0), "mass of a panel: got -1.0"),
         (lambda: fp.Panel((1, 1, 0.0), (0, 0, 0), 1.0), "size of a panel"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_composed_is_refused_by_name(make, message):
     with pytest.raises(fp.InvalidInput, match=message):
         make()
@@ -461,18 +470,20 @@ def test_robots_are_saved_only_as_urdf_files_that_can_be_written(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_plan_of_a_composed_satellite_verifies_and_is_kept_whole(tmp_path):
+def test_a_plan_of_a_composed_satellite_verifies(tmp_path):
     robot = fp.compose(
         fp.Bus((0.6, 0.6, 0.6), 40.0),
         [fp.Mount("z1", (0.3, 0.0, 0.0), (0.0, np.pi / 2, 0.0), locked={"jointGripper": -0.5})],
     )
     bent = {"joint2": 1.2, "joint3": -1.2, "joint5": 0.4}
     problem = fp.Problem(
-        robot, fp.Scene([[1.5, 0.2, 0.0], [2.0, -0.9, 0.1]], [0.15, 0.2]),
+        robot,
+        fp.Scene([[1.5, 0.2, 0.0], [2.0, -0.9, 0.1]], [0.15, 0.2]),
         start=robot.configuration(joints={"joint1": 1.0, "joint2": 0.4, "joint3": -0.4}),
         goal=robot.configuration((3.0, 0.0, 0.0), joints=bent),
-        lattice=fp.Lattice(12, fp.Axis(5, 0.25)), delta=0.01,
-    )  # fmt: skip
+        lattice=fp.Lattice(12, fp.Axis(5, 0.25)),
+        delta=0.01,
+    )
     plan = fp.plan(problem, seed=0)
     assert plan.verify(200).ok
     assert np.linalg.norm(plan.arrival_attitude) > 1e-3

@@ -8,7 +8,6 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.errors import InternalError, PlanningError
-from ffsr_plan.core.kernels import call
 from ffsr_plan.core.rules import Number, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.roadmap import Roadmap
@@ -136,11 +135,20 @@ class Walk:
         self._changed[:] = True
         ant, layer = 0, -1
         while True:
-            ant, layer = call(
-                walk, self._rng, tau, self._alpha, self._log_visibility, self._open_edges,
-                self._open_counts, roadmap.status, self._roulettes, self._changed,
-                paths, ant, layer,
-            )  # fmt: skip
+            ant, layer = walk(
+                self._rng,
+                tau,
+                self._alpha,
+                self._log_visibility,
+                self._open_edges,
+                self._open_counts,
+                roadmap.status,
+                self._roulettes,
+                self._changed,
+                paths,
+                ant,
+                layer,
+            )
             if ant == len(paths):
                 return paths
             if ant < 0:

@@ -8,7 +8,6 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.core.errors import InternalError, PlanningError
-from ffsr_plan.core.kernels import call
 from ffsr_plan.core.rules import Number, Truth, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.roadmap import Roadmap
@@ -110,7 +109,7 @@ class MaxMinAntSystem(LatticePlanner):
                 raise roadmap.no_path() or InternalError(
                     "no open edge at the start, but the roadmap has a path"
                 )
-            outcome = call(kernel.run_cycles, rng, until, state)
+            outcome = kernel.run_cycles(rng, until, state)
             if outcome == kernel.DONE:
                 return
             if roadmap.prove_path(state.candidate):
@@ -180,7 +179,7 @@ class MaxMinAntSystem(LatticePlanner):
 def _report(state: State, cycles: int) -> Cycle:
     from ffsr_plan.search.ants.max_min_kernels import CYCLE, write_untouched_rows
 
-    call(write_untouched_rows, state)
+    write_untouched_rows(state)
     number = int(state.counters[CYCLE])
     best, iteration_best, mean, distinct = map(float, state.records[number - 1])
     counts = np.zeros(state.node_costs.shape, dtype=np.int64)
@@ -193,7 +192,7 @@ def _trails(state: State) -> Trails:
     """The most walked edges, in the order of layers and nodes."""
     from ffsr_plan.search.ants.max_min_kernels import write_untouched_rows
 
-    call(write_untouched_rows, state)
+    write_untouched_rows(state)
     used = np.flatnonzero(state.walked)
     if len(used) > _MOST_TRAILS:
         ants = state.walked.ravel()[used]
