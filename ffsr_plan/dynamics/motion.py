@@ -67,7 +67,7 @@ class Motion:
             joint_values = robot.joint_values(start) + self._progress[:, None] * travel
         self.joint_values = frozen(np.array(joint_values, dtype=np.float64))
         self.positions = frozen(np.array(positions, dtype=np.float64))
-        self.attitudes = frozen(self._attitudes(self._progress))
+        self.attitudes = frozen(self.attitudes_at(self._progress))
         if self.mode.floats:
             self.positions = frozen(self._afloat(self.attitudes, self.joint_values))
 
@@ -134,7 +134,7 @@ class Motion:
         """
         t = time[:, None]
         joints = self.joints_at(edge, time)
-        quat = self._attitudes((edge + time) / self.edges)
+        quat = self.attitudes_at((edge + time) / self.edges)
         if self.mode.floats:
             position = self._afloat(quat, joints)
         else:
@@ -162,8 +162,15 @@ class Motion:
         turned = rotations.rotate(np.vstack([self._start, quats]), centers)
         return np.asarray(self._origin + turned[0] - turned[1:])
 
-    def _attitudes(self, progress: Array) -> Array:
-        """(N, 4) attitudes at path parameters (N,) from 0 to 1."""
+    def attitudes_at(self, progress: Array) -> Array:
+        """Attitudes of the base, its reaction included.
+
+        Args:
+            progress: (N,) path parameters from 0 to 1.
+
+        Returns:
+            (N, 4) quaternions (xyzw).
+        """
         if not self.mode.attitude_reacts:
             return rotations.slerp(self._start, self._goal, progress)
         if self.joints_are_straight:

@@ -41,7 +41,14 @@ class NodeClearances:
         return clearances
 
     def learn(self, path: IntArray) -> IntArray:
-        """Evaluate the nodes of a path (m + 1,); the layers whose bounds have changed."""
+        """Evaluate the nodes of a path.
+
+        Args:
+            path: (m + 1,) nodes, one a layer.
+
+        Returns:
+            (k,) inner layers whose bounds have changed.
+        """
         layers = np.flatnonzero(~self.known[np.arange(len(path)), path])
         if not len(layers):
             return layers

@@ -12,7 +12,7 @@ from __future__ import annotations
 from ffsr_plan.core.arrays import IntArray
 from ffsr_plan.core.errors import InternalError
 from ffsr_plan.lattice.roadmap import Roadmap
-from ffsr_plan.lattice.shortest_path import lazy_shortest_path
+from ffsr_plan.lattice.shortest_path import LazyShortestPath
 
 
 def lattice_optimum(roadmap: Roadmap) -> IntArray:
@@ -22,20 +22,17 @@ def lattice_optimum(roadmap: Roadmap) -> IntArray:
         NoPath: there is none.
     """
     node_costs = roadmap.optimistic_node_costs()
-
-    def objection(path: IntArray) -> int | None:
-        news = roadmap.learn(path)
-        if len(news):
-            node_costs[news] = roadmap.optimistic_costs_of_layers(news)
-            return int(news[0]) - 1
-        if roadmap.prove_path(path):
-            return None
-        return int(roadmap.refused_layers(path)[0])
-
-    edge_costs = roadmap.edge_costs()[None]
-    path = lazy_shortest_path(
-        edge_costs, node_costs, roadmap.status, roadmap.lattice.origin, objection
+    search = LazyShortestPath(
+        roadmap.edge_costs()[None], node_costs, roadmap.status, roadmap.lattice.origin
     )
-    if path is None:
-        raise roadmap.no_path() or InternalError("no shortest path, but the roadmap has a path")
-    return path
+    path = search.path()
+    while path is not None:
+        changed = roadmap.nodes.learn(path)
+        if len(changed):
+            node_costs[changed] = roadmap.optimistic_costs_of_layers(changed)
+            path = search.path(int(changed[0]) - 1)
+        elif roadmap.prove_path(path):
+            return path
+        else:
+            path = search.path(int(roadmap.refused_layers(path)[0]))
+    raise roadmap.no_path() or InternalError("no shortest path, but the roadmap has a path")

@@ -18,9 +18,9 @@ from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import REFUSED
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.roadmap import rule_out
-from ffsr_plan.lattice.shortest_path import lazy_shortest_path
+from ffsr_plan.lattice.shortest_path import LazyShortestPath
 from ffsr_plan.problem.objective import nearness, objective, path_length
-from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.proof.interval_halving import Verdict, certify
 from ffsr_plan.proof.prover import Prover
 
 _LEVELS = 4
@@ -64,7 +64,10 @@ def refined_path(
     if not lattice.problem.lattice.axes:
         return None  # one node a layer: there is no offset to change
     descent = _Descent(lattice, prover, offsets, clearances, objective)
-    descent.run()
+    for level in range(1, _LEVELS + 1):
+        for _ in range(_ROUNDS):
+            if not descent.improve(_FINEST // 2**level):
+                break
     if not descent.objective < objective:
         return None
     moved = descent.coordinates @ descent.unit
@@ -113,15 +116,7 @@ class _Descent:
             edge_queries=self._prover.queries - self._queries_before - self._node_queries,
         )
 
-    def run(self) -> None:
-        """Go down level by level."""
-        for level in range(1, _LEVELS + 1):
-            step = _FINEST // 2**level
-            for _ in range(_ROUNDS):
-                if not self._round(step):
-                    break
-
-    def _round(self, step: int) -> bool:
+    def improve(self, step: int) -> bool:
         """Take the best of the offsets around; whether another round may help."""
         choices, present = self._choices(step)
         clearances = self._clearances(choices, present)
@@ -131,13 +126,14 @@ class _Descent:
         across = np.linalg.norm(offsets[1:, None] - offsets[:-1, :, None], axis=3)
         steps = np.sqrt(self._problem.delta_d**2 + (across * self._problem.position_weight) ** 2)
         status = np.zeros(steps.shape, dtype=np.int8)
-        path = lazy_shortest_path(
-            steps / self._problem.length_unit,
-            node_costs,
-            status,
-            0,
-            lambda path: self._objection(path, choices, offsets, clearances, status),
-        )
+        edge_costs = steps / self._problem.length_unit
+        search = LazyShortestPath(edge_costs, node_costs, status, 0)
+        path = search.path()
+        while path is not None:
+            refused = self._refused_layer(path, choices, offsets, clearances, status)
+            if refused is None:
+                break
+            path = search.path(refused)
         if path is None:
             return False
         layers = np.arange(len(path))
@@ -172,16 +168,17 @@ class _Descent:
             clearances[i, k] = self._known[key]
         return clearances
 
-    def _objection(
+    def _refused_layer(
         self, path: IntArray, choices: IntArray, offsets: Array, clearances: Array, status: States
     ) -> int | None:
-        """Certify the edges of a path; note refusals in `status`, return the first one's layer."""
+        """Certify the edges of a path; set refusals in `status`, return the first one's layer."""
         for i, (a, b) in enumerate(pairwise(path)):
             key = (i, choices[i, a].tobytes(), choices[i + 1, b].tobytes())
             verdict = self._verdicts.get(key)
             if verdict is None:
                 ends = (float(clearances[i, a]), float(clearances[i + 1, b]))
-                verdict = self._prover.certify(i, offsets[i, a], offsets[i + 1, b], ends)
+                edge = self._prover.obstacle_edge(i, offsets[i, a], offsets[i + 1, b])
+                verdict = certify(edge, ends, self._prover.tolerance)
                 self._verdicts[key] = verdict
             if not verdict.free:
                 status[i, a, b] = REFUSED

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from itertools import pairwise
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
 from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.proof.interval_halving import Verdict, certify
 from ffsr_plan.proof.prover import Prover
 
 
@@ -25,6 +24,7 @@ class Roadmap:
     Attributes:
         lattice: the lattice.
         prover: clearances and proofs for any offsets.
+        nodes: clearances of the nodes, evaluated on demand.
         status: (m, n, n) state of each edge: UNKNOWN, FREE or REFUSED.
     """
 
@@ -47,7 +47,7 @@ class Roadmap:
         self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)
         self.prover.check_ends()
         self.prover.check_self_collision()
-        self._nodes = NodeClearances(self.lattice, self.prover)
+        self.nodes = NodeClearances(self.lattice, self.prover)
         m, n = self.lattice.divisions, self.lattice.size
         self.status: States = np.zeros((m, n, n), dtype=np.int8)
         self._verdicts: dict[tuple[int, int, int], Verdict] = {}
@@ -55,12 +55,12 @@ class Roadmap:
     @property
     def clearances(self) -> Array:
         """(m + 1, n) clearance of every node [m]; NaN where a layer lacks the node."""
-        return self._nodes.exact()
+        return self.nodes.exact()
 
     @property
     def admissible(self) -> Flags:
         """(m + 1, n) the nodes that touch nothing."""
-        return self._nodes.exact() > 0.0
+        return self.nodes.exact() > 0.0
 
     def without_edge_states(self) -> Roadmap:
         """A roadmap for another colony.
@@ -88,7 +88,8 @@ class Roadmap:
         if key not in self._verdicts:
             ends = (self._clearance(layer, tail), self._clearance(layer + 1, head))
             offsets = self.lattice.offsets
-            verdict = self.prover.certify(layer, offsets[tail], offsets[head], ends)
+            edge = self.prover.obstacle_edge(layer, offsets[tail], offsets[head])
+            verdict = certify(edge, ends, self.prover.tolerance)
             self._verdicts[key] = verdict
             self.status[key] = FREE if verdict.free else REFUSED
             if not verdict.free:
@@ -115,9 +116,10 @@ class Roadmap:
         Returns:
             Whether all of them are free.
         """
-        edges = [(i, int(j), int(k)) for i, (j, k) in enumerate(pairwise(path))]
-        verdicts = [self.free(*edge) for edge in edges]  # not only up to the first refusal
-        return all(verdicts)
+        layers = np.arange(len(path) - 1)
+        for layer in np.flatnonzero(self.status[layers, path[:-1], path[1:]] == UNKNOWN).tolist():
+            self.certify(layer, int(path[layer]), int(path[layer + 1]))
+        return bool(np.all(self.status[layers, path[:-1], path[1:]] == FREE))
 
     def refused_layers(self, path: IntArray) -> IntArray:
         """The layers that a path leaves by a refused edge.
@@ -159,8 +161,8 @@ class Roadmap:
         Returns:
             (m + 1,) link-to-sphere distances of Eq. 9 [m].
         """
-        self._nodes.learn(path)
-        return self._nodes.bounds[np.arange(len(path)), path]
+        self.nodes.learn(path)
+        return self.nodes.bounds[np.arange(len(path)), path]
 
     def objective(self, path: IntArray) -> float:
         """Objective of a path whose edges are assumed free.
@@ -187,7 +189,7 @@ class Roadmap:
         Returns:
             (m + 1, n) delta / d_imin [length units]; infinite at nodes in collision.
         """
-        self._nodes.exact()
+        self.nodes.exact()
         return frozen(self.optimistic_node_costs())
 
     def optimistic_node_costs(self) -> Array:
@@ -209,23 +211,12 @@ class Roadmap:
         Returns:
             (k, n) [length units].
         """
-        bounds = self._nodes.bounds[layers]
+        bounds = self.nodes.bounds[layers]
         return np.where(bounds > 0.0, nearness(self.problem, bounds), np.inf)
 
     def evaluate_all(self) -> None:
         """Evaluate every node now."""
-        self._nodes.exact()
-
-    def learn(self, path: IntArray) -> IntArray:
-        """Evaluate the nodes of a path.
-
-        Args:
-            path: (m + 1,) nodes, one a layer.
-
-        Returns:
-            (k,) inner layers whose bounds have changed.
-        """
-        return self._nodes.learn(path)
+        self.nodes.exact()
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far.
@@ -236,8 +227,8 @@ class Roadmap:
         return Counts(
             edges_free=int(np.count_nonzero(self.status == FREE)),
             edges_refused=int(np.count_nonzero(self.status == REFUSED)),
-            node_queries=self._nodes.queries,
-            edge_queries=self.prover.queries - self._nodes.queries,
+            node_queries=self.nodes.queries,
+            edge_queries=self.prover.queries - self.nodes.queries,
         )
 
     def no_path(self) -> NoPath | None:
@@ -257,11 +248,11 @@ class Roadmap:
         return None
 
     def _clearance(self, layer: int, node: int) -> float:
-        if not self._nodes.known[layer, node]:
+        if not self.nodes.known[layer, node]:
             path = np.full(self.lattice.divisions + 1, self.lattice.origin)
             path[layer] = node
-            self._nodes.learn(path)
-        return float(self._nodes.bounds[layer, node])
+            self.nodes.learn(path)
+        return float(self.nodes.bounds[layer, node])
 
     def _closing(self, layer: int) -> tuple[int | str, ...]:
         """What blocks the edges of a layer that were looked at, and the nodes they lead to."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.proof.link_bounds import link_motion
 from ffsr_plan.proof.travel_bound import IntervalTravel, ObserverTravels, TravelBound
 
 _STRAIGHTNESS = 0.03  # largest share of curvature in an interval's travel to bound its parts by it
@@ -29,38 +30,39 @@ class EdgeTravel:
 
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
-        self._bound = TravelBound(motion.robot)
+        self._bound, self._tree = TravelBound(motion.robot), motion.robot.tree
         self._known: dict[tuple[float, float], tuple[ObserverTravels, Flags]] = {}
         whole = self.over(0.0, 1.0)[0]
         self.speeds, self.speeds_in_base = (_largest_speed(travel) for travel in whole)
         self.attitude_error = float(np.max(whole.world.attitude_error, initial=0.0))
 
-    def bounds(self, layer: int, begin: float, end: float, base_step: Array) -> Array:
-        """Travel bound of each shape in the world over a dyadic interval of an edge.
+    def bounds(self, layer: int, begin: float, end: float, base_step: Array | None = None) -> Array:
+        """Travel bound of each shape over a dyadic interval of an edge.
+
+        The widest straight interval that contains the given one is computed, or the given one.
 
         Args:
             layer: the edge.
             begin: start of the interval, an integer multiple of its length, a power of two.
             end: end of the interval.
-            base_step: (3,) displacement of the base origin over the whole edge, world axes [m].
+            base_step: (3,) displacement of the base origin over the whole edge, world axes [m];
+                None for the travel relative to the base.
 
         Returns:
             (g,) bounds [m].
         """
-        travels, low, high = self._enclosing(layer, begin, end)
+        low, high = 0.0, 1.0
+        travels, straight = self.over(low, high)
+        while end - begin < high - low and not straight[layer]:
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if end <= middle else (middle, high)
+            travels, straight = self.over(low, high)
+        if base_step is None:
+            return _over_part(travels.in_base, layer, (low, high), (begin, end), np.zeros(3))
         return _over_part(travels.world, layer, (low, high), (begin, end), base_step)
 
-    def bounds_in_base(self, layer: int, begin: float, end: float) -> Array:
-        """Travel bound of each shape relative to the base; arguments as in `bounds`.
-
-        Returns:
-            (g,) bounds [m].
-        """
-        travels, low, high = self._enclosing(layer, begin, end)
-        return _over_part(travels.in_base, layer, (low, high), (begin, end), np.zeros(3))
-
     def over(self, begin: float, end: float) -> tuple[ObserverTravels, Flags]:
-        """The bounds over one interval of every edge.
+        """The bounds over one interval of every edge, computed once.
 
         Args:
             begin: start of the interval.
@@ -69,39 +71,25 @@ class EdgeTravel:
         Returns:
             The bounds, and (m,) whether the motion is straight enough to bound parts by them.
         """
-        if (begin, end) not in self._known:
-            self._known[begin, end] = self._computed(begin, end)
-        return self._known[begin, end]
-
-    def _enclosing(
-        self, layer: int, begin: float, end: float
-    ) -> tuple[ObserverTravels, float, float]:
-        """The widest straight interval that contains the given one, or the given one itself."""
-        low, high = 0.0, 1.0
-        travels, straight = self.over(low, high)
-        while end - begin < high - low and not straight[layer]:
-            middle = 0.5 * (low + high)
-            low, high = (low, middle) if end <= middle else (middle, high)
-            travels, straight = self.over(low, high)
-        return travels, low, high
-
-    def _computed(self, begin: float, end: float) -> tuple[ObserverTravels, Flags]:
+        if (begin, end) in self._known:
+            return self._known[begin, end]
         motion, m = self._motion, self._motion.edges
         time = 0.5 * (begin + end)
-        quats = motion.at(np.arange(m), np.full(m, time))[:, 3:7]
+        quats = motion.attitudes_at((np.arange(m) + time) / m)
         rates = np.diff(motion.joint_values, axis=0)
         joints = motion.joint_values[:-1] + time * rates
-        lengths = np.full(m, end - begin)
+        links = link_motion(self._tree, joints, rates, np.full(m, end - begin))
         if motion.mode.attitude_reacts:
             error = _ERROR_FACTOR * motion.reaction.error * len(motion.reaction.increments)
             floats = motion.mode.floats
-            travels = self._bound.reacting(joints, rates, quats, lengths, error, floats)
+            travels = self._bound.reacting(links, quats, error, floats)
         else:
             angular_velocity = np.tile(motion.turn, (m, 1))
-            travels = self._bound.held(joints, rates, quats, lengths, angular_velocity)
+            travels = self._bound.held(links, quats, angular_velocity)
         largest = (end - begin) * np.max(travels.world.speed, axis=1, initial=0.0)
         curvature = np.max(travels.world.curvature, axis=1, initial=0.0)
-        return travels, curvature <= _STRAIGHTNESS * largest
+        self._known[begin, end] = travels, curvature <= _STRAIGHTNESS * largest
+        return self._known[begin, end]
 
 
 def _largest_speed(whole: IntervalTravel) -> Array:

@@ -131,7 +131,7 @@ class SelfCollisionEdge:
 
     def travel(self, begin: float, end: float) -> Array:
         """(p,) sum of both travel bounds of each pair in the base frame [m]."""
-        each = self._travel.bounds_in_base(self._layer, begin, end)
+        each = self._travel.bounds(self._layer, begin, end)
         both: Array = each[self._query.pairs].sum(axis=1)
         return both
 

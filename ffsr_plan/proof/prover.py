@@ -47,7 +47,7 @@ class Prover:
             scene: the obstacles.
             tolerance: clearance below which an edge may be refused [m].
         """
-        self._motion, self._tolerance = nominal, tolerance
+        self._motion, self.tolerance = nominal, tolerance
         self._obstacles = ObstacleQuery(nominal.robot, scene)
         self._self = SelfQuery(nominal.robot)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
@@ -111,7 +111,7 @@ class Prover:
             head: (3,) offset at its end [m].
             ends: clearances at both ends [m].
         """
-        return certify(self.obstacle_edge(layer, tail, head), ends, self._tolerance)
+        return certify(self.obstacle_edge(layer, tail, head), ends, self.tolerance)
 
     def least_clearance(self, offsets: Array, clearances: Array) -> float:
         """Proven lower bound on the clearance all along a path whose edges are free.
@@ -186,6 +186,6 @@ class Prover:
         starts = [edge.clearance(0.0) for edge in edges]
         starts.append(edges[-1].clearance(1.0))
         return [
-            certify(edge, ends, self._tolerance)
+            certify(edge, ends, self.tolerance)
             for edge, ends in zip(edges, pairwise(starts), strict=True)
         ]

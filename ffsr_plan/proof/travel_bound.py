@@ -29,7 +29,7 @@ import pinocchio as pin
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.rotations import cross
-from ffsr_plan.proof.link_bounds import LinkBounds, LinkMotion, link_motion, tightened
+from ffsr_plan.proof.link_bounds import LinkBounds, LinkMotion, tightened
 from ffsr_plan.robots.kinematics import turned
 from ffsr_plan.robots.robot import SpaceRobot
 
@@ -150,21 +150,13 @@ class TravelBound:
         self.points = np.concatenate([np.zeros((0, 3)), *points])
 
     def reacting(
-        self,
-        joint_values: Array,
-        joint_rates: Array,
-        attitudes: Array,
-        lengths: Array,
-        error: float,
-        floats: bool = False,
+        self, links: LinkMotion, attitudes: Array, error: float, floats: bool = False
     ) -> ObserverTravels:
         """The bound for a base whose rotation keeps the angular momentum at zero.
 
         Args:
-            joint_values: (K, nd) at the middle of each interval [rad or m].
-            joint_rates: (K, nd) change over a whole edge [rad or m].
+            links: motion of the links over K intervals.
             attitudes: (K, 4) of the base at the middle (xyzw).
-            lengths: (K,) of the intervals, in units of edge time: at most 1.
             error: bound on the error [rad] of any attitude, of these and of those at which
                 clearances are measured.
             floats: whether the centre of mass is at rest (free-floating), so that the base step is
@@ -173,30 +165,19 @@ class TravelBound:
         Returns:
             The bound in the world and relative to the base.
         """
-        links = link_motion(self._tree, joint_values, joint_rates, lengths)
         return self._travels(links, self._reaction(links), attitudes, error, floats)
 
-    def held(
-        self,
-        joint_values: Array,
-        joint_rates: Array,
-        attitudes: Array,
-        lengths: Array,
-        angular_velocity: Array,
-    ) -> ObserverTravels:
+    def held(self, links: LinkMotion, attitudes: Array, angular_velocity: Array) -> ObserverTravels:
         """The bound for a base that rotates at a constant angular velocity.
 
         Args:
-            joint_values: (K, nd) at the middle of each interval [rad or m].
-            joint_rates: (K, nd) change over a whole edge [rad or m].
+            links: motion of the links over K intervals.
             attitudes: (K, 4) of the base at the middle (xyzw).
-            lengths: (K,) of the intervals, in units of edge time: at most 1.
             angular_velocity: (K, 3) of the base, base axes [rad per unit of edge time].
 
         Returns:
             The bound in the world and relative to the base.
         """
-        links = link_motion(self._tree, joint_values, joint_rates, lengths)
         speed = np.sqrt(np.sum(angular_velocity**2, axis=-1))
         rotation = _BaseRotation(angular_velocity, speed, np.zeros_like(speed))
         return self._travels(links, rotation, attitudes, 0.0)

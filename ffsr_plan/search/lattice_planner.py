@@ -74,7 +74,11 @@ class LatticePlanner:
         """
         self.refuse(problem)
         roadmap = Roadmap(problem)
-        result, counts = self._searched(roadmap, rng, request)
+        if request.colonies == 1:
+            result = self.search(roadmap, rng, request.monitor())
+            counts = roadmap.counts()
+        else:
+            result, counts = self._search_by_colonies(roadmap, rng, request)
         lattice, prover = roadmap.lattice, roadmap.prover
         objective = lattice_objective = roadmap.objective(result.path)
         optimum = objective if self.exact else roadmap.objective(lattice_optimum(roadmap))
@@ -103,11 +107,9 @@ class LatticePlanner:
             interrupted=result.interrupted,
         )
 
-    def _searched(
+    def _search_by_colonies(
         self, roadmap: Roadmap, rng: np.random.Generator, request: SearchRequest
     ) -> tuple[SearchResult, Counts]:
-        if request.colonies == 1:
-            return self.search(roadmap, rng, request.monitor()), roadmap.counts()
         roadmap.evaluate_all()  # as every worker does, so that all counts are alike
         counts, rngs = roadmap.counts(), rng.spawn(request.colonies)
         if request.workers == 1:

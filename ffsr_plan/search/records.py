@@ -146,6 +146,7 @@ class SearchRequest(NamedTuple):
         workers: number of processes that they are spread over.
         time_limit: [s] for the search, from its beginning.
         on_cycle: called after each cycle of a single colony, or None.
+        stop_requested: asked between cycles; whether the search is to end with what it has.
     """
 
     refine: bool | None = None
@@ -153,10 +154,12 @@ class SearchRequest(NamedTuple):
     workers: int = 1
     time_limit: float = math.inf
     on_cycle: OnCycle | None = None
+    stop_requested: Callable[[], bool] = bool
 
     def monitor(self) -> SearchMonitor:
         """The monitor of a search that begins now."""
-        return SearchMonitor(self.on_cycle, time.monotonic() + self.time_limit)
+        deadline = time.monotonic() + self.time_limit
+        return SearchMonitor(self.on_cycle, deadline, self.stop_requested)
 
 
 class Solution(NamedTuple):

@@ -13,6 +13,7 @@ import pinocchio as pin
 
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
+from ffsr_plan.proof.link_bounds import link_motion
 from ffsr_plan.proof.travel_bound import TravelBound
 from tests.helpers.random_trees import Limb, Z, at, body, random_tree
 
@@ -43,15 +44,17 @@ class SampledEdge(NamedTuple):
 
     def travel(self, middles, lengths, error=0.0):
         bound, rates = TravelBound(self.robot), np.tile(self.step, (len(middles), 1))
-        given_ = self.joints(middles), rates, self.attitudes(middles), lengths
+        links = link_motion(self.robot.tree, self.joints(middles), rates, lengths)
+        attitudes = self.attitudes(middles)
         if self.turn is None:
-            return bound.reacting(*given_, error).world
-        return bound.held(*given_, np.tile(self.turn, (len(middles), 1))).world
+            return bound.reacting(links, attitudes, error).world
+        return bound.held(links, attitudes, np.tile(self.turn, (len(middles), 1))).world
 
     def in_base(self, middles, lengths):
         rates = np.tile(self.step, (len(middles), 1))
-        bound, given_ = TravelBound(self.robot), (self.joints(middles), rates)
-        travels = bound.reacting(*given_, self.attitudes(middles), lengths, 0.0)
+        bound = TravelBound(self.robot)
+        links = link_motion(self.robot.tree, self.joints(middles), rates, lengths)
+        travels = bound.reacting(links, self.attitudes(middles), 0.0)
         return travels.in_base.bounds(np.arange(len(middles)), np.zeros((len(middles), 3)))
 
     def places(self, middle, length, in_base=False):

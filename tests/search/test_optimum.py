@@ -136,10 +136,10 @@ def test_bounds_from_neighbours_are_never_below_a_clearance(seed):
     for _ in range(3):
         path = rng.integers(0, n, m + 1)
         path[[0, -1]] = roadmap.lattice.origin
-        news = roadmap.learn(path)
+        news = roadmap.nodes.learn(path)
         assert np.all((news >= 1) & (news < m))
-        assert len(roadmap.learn(path)) == 0
-    bounds = roadmap._nodes.bounds.copy()
+        assert len(roadmap.nodes.learn(path)) == 0
+    bounds = roadmap.nodes.bounds.copy()
     exact = roadmap.clearances
     assert np.all(bounds[1:-1] >= exact[1:-1] - 1e-9)
 

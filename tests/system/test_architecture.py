@@ -1,13 +1,15 @@
 """The floors of the package: imports lead down, modules form no circle, folders stay small."""
 
 import ast
+import sys
 from pathlib import Path
 
 import pytest
 
+import ffsr_plan as fp
 from tools.architecture import PACKAGE, floors, folder_of, imports, modules
 
-MOST_FILES, MOST_LINES, MOST_LINES_OF_FUNCTION = 12, 400, 60
+MOST_FILES, MOST_LINES, MOST_LINES_OF_FUNCTION, MOST_CALLS = 12, 400, 60, 12
 
 
 def test_every_folder_has_a_floor():
@@ -72,3 +74,50 @@ def test_the_picture_shows_the_floors():
         for folder, purpose in floor.items():
             assert f">{folder}<" in text
             assert purpose in text
+
+
+ARITHMETIC = (
+    "core/", "collision/", "robots/kinematics", "dynamics/momentum", "dynamics/reaction",
+    "dynamics/mode", "proof/link_bounds", "proof/travel_bound",
+)  # fmt: skip
+
+
+def depth_of_calls(job):
+    """Calls on the stack of `job` down to the first one into the arithmetic, at most."""
+    deepest, stack, prefix = [], [], f"{PACKAGE}/"
+
+    def look(frame, event, _):
+        file, name = frame.f_code.co_filename, frame.f_code.co_name
+        if event not in ("call", "return") or not file.startswith(prefix) or name[0] == "<":
+            return
+        if event == "return":
+            stack.pop()
+            return
+        above_arithmetic = not stack or not stack[-1][0].startswith(ARITHMETIC)
+        stack.append((file[len(prefix) :], name))
+        if above_arithmetic and len(stack) > len(deepest):
+            deepest[:] = stack
+
+    sys.setprofile(look)
+    try:
+        job()
+    finally:
+        sys.setprofile(None)
+    return deepest
+
+
+@pytest.mark.parametrize(
+    ("scenario", "planner"),
+    [
+        ("inspection", fp.MaxMinAntSystem(cycles=3)),
+        ("inspection", fp.LatticeOptimum()),
+        ("fig2a", fp.AntSystem(ants=3, cycles=2)),
+        ("gate", fp.PostureAnnealing(ants=3, cycles=2, annealing_shifts=20)),
+    ],
+)
+def test_a_plan_is_few_calls_away_from_its_arithmetic(scenario, planner):
+    problem = fp.load_scenario(scenario)
+    fp.plan(problem, planner)  # compile first
+    stack = depth_of_calls(lambda: fp.plan(problem, planner))
+    assert stack[0] == ("planning/planner.py", "plan")
+    assert len(stack) <= MOST_CALLS, " > ".join(name for _, name in stack)

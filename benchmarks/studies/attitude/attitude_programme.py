@@ -25,7 +25,7 @@ from benchmarks.random_scenes import RESULTS, publish, table
 from benchmarks.studies.attitude.gates import variation
 from benchmarks.studies.attitude.yaw_programme import REACHABLE, Way, cheapest_way, coarse_to_fine
 from ffsr_plan.search.postures.colony import PostureColony
-from ffsr_plan.search.postures.path_proof import prove_path
+from ffsr_plan.search.postures.path_proof import corners, prove_path
 from ffsr_plan.search.postures.posture_grid import posture_grid
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.records import SearchMonitor
@@ -100,7 +100,7 @@ def programme(lattice: PostureLattice, solve: Callable[[], Way]) -> Run:
     again = colony.cost(way.path)
     if not math.isclose(again, way.cost, rel_tol=1e-9):
         raise RuntimeError(f"a programme's path costs {again}, not {way.cost}")
-    holds = prove_path(lattice, way.path).holds
+    holds = prove_path(lattice, *corners(lattice, way.path)).holds
     return Run(way.cost, way.queries, seconds, holds)
 
 
@@ -123,7 +123,7 @@ def colony_run(
     colony = PostureColony(lattice, grid, settings, np.random.default_rng(seed))
     found = colony.search(monitor)
     seconds, total = time.process_time() - begin, int(queries[0])
-    holds = prove_path(lattice, found.path).holds
+    holds = prove_path(lattice, *corners(lattice, found.path)).holds
     return Run(found.cost, total, seconds, holds), total - by_ants[-1]
 
 

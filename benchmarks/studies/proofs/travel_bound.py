@@ -20,6 +20,7 @@ import ffsr_plan as fp
 from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, table
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
+from ffsr_plan.proof.link_bounds import link_motion
 from ffsr_plan.proof.travel_bound import TravelBound
 from ffsr_plan.robots.kinematics import Tree, turned
 from tests.helpers.random_trees import random_tree
@@ -69,6 +70,7 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
     about = relative_places(robot, begin[every] + times.reshape(-1, 1) * steps[every])
     bound = TravelBound(robot)
     now, rates = begin[edge] + middles[:, None] * steps[edge], steps[edge]
+    links = link_motion(robot.tree, now, rates, lengths)
     base = rng.normal(size=(len(edge), 3))
     base *= BASE_STEP / np.linalg.norm(base, axis=1, keepdims=True)
     which = np.broadcast_to(np.arange(len(BASES)), shape).ravel()
@@ -79,12 +81,12 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
         if mode == "free-flying":
             quats = reaction.rotation(every, times.ravel())
             at_middle = reaction.rotation(edge, middles)
-            travel = bound.reacting(now, rates, at_middle, lengths, 0.0).world
+            travel = bound.reacting(links, at_middle, 0.0).world
             omega = None
         else:
             quats = rotations.exp(times.reshape(-1, 1) * turns[every])
             at_middle = rotations.exp(middles[:, None] * turns[edge])
-            travel = bound.held(now, rates, at_middle, lengths, turns[edge]).world
+            travel = bound.held(links, at_middle, turns[edge]).world
             omega = np.linalg.norm(turns, axis=1)
         points = rng.integers(travel.speed.shape[1], size=len(edge))
         follows = -travel.velocity[np.arange(len(edge)), points]

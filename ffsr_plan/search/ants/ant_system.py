@@ -10,6 +10,7 @@ from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.errors import InternalError, PlanningError
 from ffsr_plan.core.rules import Number, WholeNumber
 from ffsr_plan.core.settings import settings
+from ffsr_plan.lattice.edge_states import REFUSED, UNKNOWN
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
@@ -155,7 +156,10 @@ class Walk:
                 raise roadmap.no_path() or InternalError(
                     "no open edge at the start, but the roadmap has a path"
                 )
-            if not roadmap.free(layer, int(paths[ant, layer]), int(paths[ant, layer + 1])):
+            edge = layer, int(paths[ant, layer]), int(paths[ant, layer + 1])
+            if roadmap.status[edge] == UNKNOWN:
+                roadmap.certify(*edge)
+            if roadmap.status[edge] == REFUSED:
                 close_refused(
                     layer, roadmap.status, self._open_edges, self._open_counts, self._changed
                 )

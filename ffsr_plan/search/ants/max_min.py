@@ -70,13 +70,19 @@ class MaxMinAntSystem(LatticePlanner):
         monitor = monitor or SearchMonitor()
         roadmap.prove_obvious()
         open_edges, open_counts = find_open_edges(roadmap.admissible, roadmap.status)
+        if open_counts[0, roadmap.lattice.origin] == 0:
+            raise roadmap.no_path() or InternalError(
+                "no open edge at the start, but the roadmap has a path"
+            )
         state = self._state(roadmap, open_edges)
         until, stride = 0, 1 if monitor.on_cycle is not None else _CYCLES_PER_TIME_CHECK
         interrupted = False
         try:
             while until < self.cycles and not interrupted:
                 until = min(until + stride, self.cycles)
-                self._run_until(until, rng, roadmap, state, open_counts)
+                while kernel.run_cycles(rng, until, state) != kernel.DONE:
+                    if not roadmap.prove_path(state.candidate):
+                        _close_refused(roadmap, state, open_counts)
                 if monitor.on_cycle is not None:
                     monitor.on_cycle(_report(state, self.cycles))
                 interrupted = monitor.expired() and until < self.cycles
@@ -91,35 +97,6 @@ class MaxMinAntSystem(LatticePlanner):
         history = History.of_rows(done)
         trails = _trails(state)
         return SearchResult(frozen(state.best_path), history, trails, interrupted)
-
-    def _run_until(
-        self,
-        until: int,
-        rng: np.random.Generator,
-        roadmap: Roadmap,
-        state: State,
-        open_counts: IntArray,
-    ) -> None:
-        """Run cycles; certify the paths that they come up with; close what is refused."""
-        from ffsr_plan.search.ants import max_min_kernels as kernel
-        from ffsr_plan.search.ants.open_edges import close_refused
-
-        while True:
-            if open_counts[0, roadmap.lattice.origin] == 0:
-                raise roadmap.no_path() or InternalError(
-                    "no open edge at the start, but the roadmap has a path"
-                )
-            outcome = kernel.run_cycles(rng, until, state)
-            if outcome == kernel.DONE:
-                return
-            if roadmap.prove_path(state.candidate):
-                continue
-            changed = np.zeros(open_counts.shape, dtype=bool)
-            for layer in roadmap.refused_layers(state.candidate):
-                close_refused(layer, roadmap.status, state.open_edges, open_counts, changed)
-            state.visibility[changed] *= state.open_edges[changed]
-            state.visibility_roulettes[changed] = np.cumsum(state.visibility[changed], axis=1)
-            state.roulette_cycles[changed] = -1
 
     def _state(self, roadmap: Roadmap, open_edges: Flags) -> State:
         from ffsr_plan.search.ants.local_search_kernels import neighbourhood
@@ -174,6 +151,26 @@ class MaxMinAntSystem(LatticePlanner):
         cost = np.maximum(edge_costs[None] + seen[:, None, :], 1e-12)
         cost /= cost.min()
         return np.asarray(1.0 / cost**2 if beta == 2.0 else cost**-beta)
+
+
+def _close_refused(roadmap: Roadmap, state: State, open_counts: IntArray) -> None:
+    """Close the refused edges of the candidate path.
+
+    Raises:
+        NoPath: no open edge leaves the start any more.
+    """
+    from ffsr_plan.search.ants.open_edges import close_refused
+
+    changed = np.zeros(open_counts.shape, dtype=bool)
+    for layer in roadmap.refused_layers(state.candidate):
+        close_refused(layer, roadmap.status, state.open_edges, open_counts, changed)
+    if open_counts[0, roadmap.lattice.origin] == 0:
+        raise roadmap.no_path() or InternalError(
+            "no open edge at the start, but the roadmap has a path"
+        )
+    state.visibility[changed] *= state.open_edges[changed]
+    state.visibility_roulettes[changed] = np.cumsum(state.visibility[changed], axis=1)
+    state.roulette_cycles[changed] = -1
 
 
 def _report(state: State, cycles: int) -> Cycle:

@@ -62,15 +62,48 @@ class PathProof(NamedTuple):
         return not self.refused and self.attitude_error <= ATTITUDE_TOLERANCE
 
 
-def prove_path(lattice: PostureLattice, path: IntArray) -> PathProof:
-    """Prove the motion along a path.
+def corners(lattice: PostureLattice, path: IntArray) -> tuple[Array, Array]:
+    """Base positions and joint values along a path.
 
     Args:
         lattice: the lattice.
         path: (m + 1, 2) base offset and posture on each layer.
+
+    Returns:
+        (m + 1, 3) base origin in the world [m], and (m + 1, nd) joint values [rad or m].
     """
-    base, joints = lattice.base, lattice.joint_values[np.arange(len(path)), path[:, 1]]
-    return _prove(lattice.problem, base.nominal.positions + base.offsets[path[:, 0]], joints)
+    positions = lattice.base.nominal.positions + lattice.base.offsets[path[:, 0]]
+    return positions, lattice.joint_values[np.arange(len(path)), path[:, 1]]
+
+
+def prove_path(lattice: PostureLattice, positions: Array, joints: Array) -> PathProof:
+    """Prove the motion through base positions and joint values.
+
+    Args:
+        lattice: gives the problem.
+        positions: (m + 1, 3) base origin in the world [m].
+        joints: (m + 1, nd) joint values [rad or m].
+    """
+    problem = lattice.problem
+    motion = Motion(problem.robot, problem.mode, problem.start, problem.goal, positions, joints)
+    prover, m = Prover(motion, problem.scene, problem.tolerance), len(positions) - 1
+    still = np.zeros(3)
+    clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
+    refused = []
+    for layer, links in enumerate(prover.self_verdicts()):
+        ends = float(clearances[layer]), float(clearances[layer + 1])
+        verdict = prover.certify(layer, still, still, ends)
+        if not verdict.free:
+            near = prover.nearest(layer, still, still, verdict.time)
+        elif not links.free:
+            near = prover.nearest_links(layer, links.time)
+        else:
+            continue
+        refused.append(RefusedEdge(layer, near.link, near.obstacle, near.distance))
+    error = 0.0
+    if problem.reach_attitude:
+        error = float(angle_between(motion.attitudes[-1], problem.goal[3:7]))
+    return PathProof(motion, prover, clearances, refused, error)
 
 
 def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProof, int]:
@@ -90,7 +123,7 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
         )  # fmt: skip
         if joints is None:
             break
-        other = _prove(problem, motion.positions, joints)
+        other = prove_path(lattice, motion.positions, joints)
         queries += other.prover.queries
         if other.holds and other.attitude_error < proof.attitude_error:
             return other, queries
@@ -142,25 +175,3 @@ def objective_of(lattice: PostureLattice, proof: PathProof) -> float:
         F of Eq. 8 [length units].
     """
     return objective(lattice.problem, length_of(lattice, proof.motion), proof.clearances)
-
-
-def _prove(problem: Problem, positions: Array, joints: Array) -> PathProof:
-    motion = Motion(problem.robot, problem.mode, problem.start, problem.goal, positions, joints)
-    prover, m = Prover(motion, problem.scene, problem.tolerance), len(positions) - 1
-    still = np.zeros(3)
-    clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
-    refused = []
-    for layer, links in enumerate(prover.self_verdicts()):
-        ends = float(clearances[layer]), float(clearances[layer + 1])
-        verdict = prover.certify(layer, still, still, ends)
-        if not verdict.free:
-            near = prover.nearest(layer, still, still, verdict.time)
-        elif not links.free:
-            near = prover.nearest_links(layer, links.time)
-        else:
-            continue
-        refused.append(RefusedEdge(layer, near.link, near.obstacle, near.distance))
-    error = 0.0
-    if problem.reach_attitude:
-        error = float(angle_between(motion.attitudes[-1], problem.goal[3:7]))
-    return PathProof(motion, prover, clearances, refused, error)

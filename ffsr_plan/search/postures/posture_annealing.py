@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import time
 from typing import ClassVar
 
 import numpy as np
@@ -11,7 +11,7 @@ from ffsr_plan.core.arrays import IntArray, frozen
 from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput, UnprovenPath
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.settings import settings
-from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.certificate import Certificate, Counts
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
 from ffsr_plan.search.postures.colony import PostureColony, PosturePath
@@ -20,6 +20,7 @@ from ffsr_plan.search.postures.path_proof import (
     ATTITUDE_TOLERANCE,
     PathProof,
     check_start,
+    corners,
     corrected_proof,
     length_of,
     objective_of,
@@ -78,70 +79,16 @@ class PostureAnnealing(AnnealingSettings):
             raise InvalidInput(
                 "refine", True, "False or None on a lattice with posture axes: it is not refined"
             )
-        if request.colonies == 1:
-            return self.solve_once(problem, rng, request.monitor)
-        rngs = rng.spawn(request.colonies)
-        job, time_limit = (problem, self), request.time_limit
-        if request.workers == 1:
-            outcomes = _run_colonies(job, rngs, request.monitor())
-        else:
-            outcomes = run_on_workers(_run_colonies, job, rngs, request.workers, time_limit)
-        solutions = [outcome for outcome in outcomes if isinstance(outcome, Solution)]
-        if not solutions:
-            raise next(outcome for outcome in outcomes if isinstance(outcome, FfsrPlanError))
-        return min(solutions, key=lambda solution: solution.objective)
-
-    def solve_once(
-        self,
-        problem: Problem,
-        rng: np.random.Generator,
-        monitor_of: Callable[[], SearchMonitor],
-    ) -> Solution:
-        """`solve` by one colony; `monitor_of` makes its monitor when the search begins."""
+        if request.colonies > 1:
+            return self._best_of_colonies(problem, rng, request)
         lattice = PostureLattice(problem)
         check_start(problem)
         colony = PostureColony(lattice, posture_grid(lattice), self, rng)
-        result = colony.search(monitor_of())
-        path, proof, queries, refused = self._proven(lattice, colony, result)
-        lattice_objective = objective_of(lattice, proof)
-        if problem.reach_attitude:
-            proof, spent = corrected_proof(lattice, proof)
-            queries += spent
-        before = proof.prover.queries
-        still = np.zeros((problem.lattice.divisions + 1, 3))
-        least = proof.prover.least_clearance(still, proof.clearances)
-        queries += proof.prover.queries - before
-        nodes = np.hstack([lattice.base.indices[path[:, 0]], lattice.indices[path[:, 1]]])
-        return Solution(
-            lattice=lattice.base,
-            motion=proof.motion,
-            nodes=frozen(nodes if nodes.shape[1] > 1 else nodes[:, 0]),
-            length=length_of(lattice, proof.motion),
-            objective=objective_of(lattice, proof),
-            lattice_objective=lattice_objective,
-            optimum=min(lower_bound(lattice), lattice_objective),
-            clearances=frozen(proof.clearances),
-            history=_in_units(result.history, problem.length_unit),
-            trails=result.trails,
-            certificate=Certificate(
-                edges_free=len(still) - 1,
-                edges_refused=refused,
-                node_queries=len(still),
-                edge_queries=queries - len(still),
-                least_clearance=least,
-            ),
-            interrupted=result.interrupted,
-        )
-
-    def _proven(
-        self, lattice: PostureLattice, colony: PostureColony, result: PosturePath
-    ) -> tuple[IntArray, PathProof, int, int]:
-        """A proven path, its proof, Coal queries, and edges refused on the way to it."""
-        problem, path, queries, refused = lattice.problem, result.path, 0, 0
+        result = colony.search(request.monitor())
+        path, queries, refused = result.path, 0, 0
         shifts = _SHIFTS_AFTER_REFUSAL * problem.lattice.divisions
         for _ in range(_PROOF_ATTEMPTS):
-            proof = prove_path(lattice, path)
-            proven_path = path
+            proof, proven_path = prove_path(lattice, *corners(lattice, path)), path
             queries += proof.prover.queries
             if proof.holds or result.interrupted:
                 break
@@ -149,14 +96,67 @@ class PostureAnnealing(AnnealingSettings):
                 colony.refuse(edge.layer, path)
                 refused += 1
             path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL)
-        if proof.refused:
-            layer, link, obstacle, distance = proof.refused[0]
-            divisions = problem.lattice.divisions
-            raise UnprovenPath(layer + 1, link, obstacle, distance, divisions)
-        if proof.attitude_error > ATTITUDE_TOLERANCE:
-            wanted = float(angle_between(problem.start[3:7], problem.goal[3:7]))
-            raise AttitudeOutOfReach(wanted, proof.attitude_error)
-        return proven_path, proof, queries, refused
+        _check_proof(problem, proof)
+        lattice_objective = objective_of(lattice, proof)
+        if problem.reach_attitude:
+            proof, spent = corrected_proof(lattice, proof)
+            queries += spent
+        counts = Counts(len(path) - 1, refused, len(path), queries - len(path))
+        return _solution(lattice, proven_path, proof, counts, result, lattice_objective)
+
+    def _best_of_colonies(
+        self, problem: Problem, rng: np.random.Generator, request: SearchRequest
+    ) -> Solution:
+        rngs, job = rng.spawn(request.colonies), (problem, self)
+        if request.workers == 1:
+            outcomes = _run_colonies(job, rngs, request.monitor())
+        else:
+            outcomes = run_on_workers(_run_colonies, job, rngs, request.workers, request.time_limit)
+        solutions = [outcome for outcome in outcomes if isinstance(outcome, Solution)]
+        if not solutions:
+            raise next(outcome for outcome in outcomes if isinstance(outcome, FfsrPlanError))
+        return min(solutions, key=lambda solution: solution.objective)
+
+
+def _check_proof(problem: Problem, proof: PathProof) -> None:
+    """Raise `UnprovenPath` or `AttitudeOutOfReach` if the proof does not hold."""
+    if proof.refused:
+        layer, link, obstacle, distance = proof.refused[0]
+        raise UnprovenPath(layer + 1, link, obstacle, distance, problem.lattice.divisions)
+    if proof.attitude_error > ATTITUDE_TOLERANCE:
+        wanted = float(angle_between(problem.start[3:7], problem.goal[3:7]))
+        raise AttitudeOutOfReach(wanted, proof.attitude_error)
+
+
+def _solution(
+    lattice: PostureLattice,
+    path: IntArray,
+    proof: PathProof,
+    counts: Counts,
+    result: PosturePath,
+    lattice_objective: float,
+) -> Solution:
+    """The solution along a proven path; `counts` so far, without the least clearance."""
+    problem, before = lattice.problem, proof.prover.queries
+    still = np.zeros((len(path), 3))
+    least = proof.prover.least_clearance(still, proof.clearances)
+    queries = counts.edge_queries + proof.prover.queries - before
+    nodes = np.hstack([lattice.base.indices[path[:, 0]], lattice.indices[path[:, 1]]])
+    counts = counts._replace(edge_queries=queries)
+    return Solution(
+        lattice=lattice.base,
+        motion=proof.motion,
+        nodes=frozen(nodes if nodes.shape[1] > 1 else nodes[:, 0]),
+        length=length_of(lattice, proof.motion),
+        objective=objective_of(lattice, proof),
+        lattice_objective=lattice_objective,
+        optimum=min(lower_bound(lattice), lattice_objective),
+        clearances=frozen(proof.clearances),
+        history=_in_units(result.history, problem.length_unit),
+        trails=result.trails,
+        certificate=Certificate(*counts, least),
+        interrupted=result.interrupted,
+    )
 
 
 def _run_colonies(
@@ -167,7 +167,11 @@ def _run_colonies(
     outcomes: list[Solution | FfsrPlanError] = []
     for rng in rngs:
         try:
-            outcomes.append(planner.solve_once(problem, rng, lambda: monitor))
+            request = SearchRequest(
+                time_limit=monitor.deadline - time.monotonic(),
+                stop_requested=monitor.stop_requested,
+            )
+            outcomes.append(planner.solve(problem, rng, request))
         except FfsrPlanError as error:
             outcomes.append(error)
         last = outcomes[-1]
