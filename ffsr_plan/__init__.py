@@ -9,13 +9,17 @@ assert plan.verify().ok
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ffsr_plan.collision.distances import Clearance, clearance
+from ffsr_plan.core import errors
 from ffsr_plan.core.errors import (
     AttitudeOutOfReach,
     FfsrPlanError,
     GoalInCollision,
+    IntegrationError,
+    InternalError,
     InvalidInput,
     NoPath,
     PlanningError,
@@ -25,16 +29,22 @@ from ffsr_plan.core.errors import (
     WorkerDied,
 )
 from ffsr_plan.dynamics import momentum
+from ffsr_plan.dynamics.inverse_dynamics import States
+from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
+from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.planning.plan import Plan
 from ffsr_plan.planning.planner import plan, refine
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
-from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
+from ffsr_plan.problem.lattice_settings import Axis, Lattice
+from ffsr_plan.problem.posture_axes import PostureAxis
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.single_edge import EdgeProof, certify_edge
-from ffsr_plan.robots.robot import SpaceRobot, load_robot, robot_names
+from ffsr_plan.robots.collision_shapes import Replacement
+from ffsr_plan.robots.robot import Components, SpaceRobot, load_robot, robot_names
 from ffsr_plan.robots.summary import RobotSummary, robot_summaries
 from ffsr_plan.satellites.arms import arm_names
 from ffsr_plan.satellites.bus import Bus, Panel
@@ -45,30 +55,42 @@ from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
 from ffsr_plan.search.lattice_optimum import LatticeOptimum
 from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
+from ffsr_plan.search.records import Cycle, History, Trails
 from ffsr_plan.trajectory.timed_plan import TimedPlan
 
 if TYPE_CHECKING:
     from ffsr_plan.display.live_view import LiveView
-    from ffsr_plan.scenario_files.scenario import Scenario, load_scenario, read_scenario
+    from ffsr_plan.display.page_server import PageServer
+    from ffsr_plan.scenario_files.scenario import Scenario, load_scenario
+    from ffsr_plan.verification.verify import Report
 
-__version__ = "0.1.0"
+__version__ = "0.2.0.dev0"
 __all__ = [
     "AntSystem",
     "AttitudeOutOfReach",
     "Axis",
     "Bus",
+    "Certificate",
     "Clearance",
+    "Components",
+    "Cycle",
     "EdgeProof",
     "FfsrPlanError",
     "GoalInCollision",
+    "History",
+    "IntegrationError",
+    "InternalError",
     "InvalidInput",
     "Lattice",
     "LatticeOptimum",
     "LayeredLattice",
     "LiveView",
     "MaxMinAntSystem",
+    "Mode",
+    "Motion",
     "Mount",
     "NoPath",
+    "PageServer",
     "Panel",
     "Plan",
     "PlanningError",
@@ -76,13 +98,17 @@ __all__ = [
     "PostureAnnealing",
     "PostureAxis",
     "Problem",
+    "Replacement",
+    "Report",
     "Roadmap",
     "RobotSummary",
     "Scenario",
     "Scene",
     "SpaceRobot",
     "StartInCollision",
+    "States",
     "TimedPlan",
+    "Trails",
     "UnprovenPath",
     "WheelMomentum",
     "WorkerDied",
@@ -90,33 +116,32 @@ __all__ = [
     "certify_edge",
     "clearance",
     "compose",
+    "errors",
     "generators",
     "inverse_kinematics",
     "load_robot",
     "load_scenario",
     "momentum",
     "plan",
-    "read_scenario",
     "refine",
     "robot_names",
     "robot_summaries",
 ]
 
-_LAZY = {  # these need pydantic, or a web server
+_LAZY = {  # modules that take time to import and that not every script needs
     "LiveView": "display.live_view",
+    "PageServer": "display.page_server",
+    "Report": "verification.verify",
     "Scenario": "scenario_files.scenario",
     "load_scenario": "scenario_files.scenario",
-    "read_scenario": "scenario_files.scenario",
 }
 
 
 def __getattr__(name: str) -> object:
     if name in _LAZY:
-        from importlib import import_module
-
         return getattr(import_module(f"ffsr_plan.{_LAZY[name]}"), name)
     raise AttributeError(f"module 'ffsr_plan' has no attribute '{name}'")
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return [*__all__, "__version__"]

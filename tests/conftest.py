@@ -31,5 +31,5 @@ def point():
 
 @pytest.fixture(scope="session")
 def fig2a_plan():
-    scenario = fp.read_scenario("fig2a")
+    scenario = fp.Scenario.load("fig2a")
     return fp.plan(scenario.problem, scenario.planner, scenario.seed, refine=scenario.refine)

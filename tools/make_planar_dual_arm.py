@@ -1,10 +1,10 @@
-"""Write `urdf/planar_dual_arm.urdf`: Table 1 of the paper as a robot.
+"""Write `urdf/planar_dual_arm.urdf`, the robot of Table 1 of the paper.
 
-"Ant Colony Algorithm for FFSR Collision Avoidance Motion Planning", Table 1. What the
-table leaves open (where the shoulders sit, how wide and deep the links are, moments of inertia out
-of the plane, joint limits, colours) is chosen here.
+The paper is "Ant Colony Algorithm for FFSR Collision Avoidance Motion Planning". Positions of the
+shoulders, width and depth of the links, moments of inertia out of the plane, joint limits and
+colours are not in the table; they are chosen here.
 
-`python -m tools.make_planar_dual_arm urdf` writes the URDF of the robot.
+Usage: `python -m tools.make_planar_dual_arm urdf`.
 """
 
 from __future__ import annotations
@@ -18,19 +18,22 @@ if TYPE_CHECKING:
 
 
 class Body(NamedTuple):
-    """A row of Table 1."""
+    """A row of Table 1.
+
+    Attributes:
+        length: [m].
+        mass: [kg].
+        inertia: about the centre of mass and the plane's normal [kg m^2].
+    """
 
     length: float
-    """[m]"""
     mass: float
-    """[kg]"""
     inertia: float
-    """[kg m^2], about the centre of mass and the plane's normal."""
 
 
 BASE = Body(0.5, 5.0, 0.20833)
-# The right first link's inertia is printed .00067. A uniform rod has m L^2 / 12 = .00667, which is
-# what the table prints for its left twin.
+# The table prints .00067 for the right first link. A uniform rod has m L^2 / 12 = .00667, which the
+# table prints for the left first link.
 ARM = (Body(0.4, 0.5, 0.00667), Body(0.4, 0.5, 0.00667), Body(0.1266, 0.2, 0.00027))
 
 # Our choices
@@ -39,7 +42,7 @@ SHOULDER = (0.12, 0.27)
 WIDTHS = (0.09, 0.08, 0.06)
 """Width and depth of the links [m]."""
 LIMITS = (1.8, 2.6, 2.4)
-"""|joint value| at most [rad]."""
+"""Largest magnitude of the joint values [rad]."""
 
 _GOLD = (0.86, 0.64, 0.22, 1.0)
 _SILVER = (0.80, 0.83, 0.88, 1.0)
@@ -49,10 +52,13 @@ _ORANGE = (0.95, 0.45, 0.12, 1.0)
 
 
 def build_planar_dual_arm() -> yourdfpy.Robot:
-    """Table 1 as a URDF: planar, arms of three links each, all axes along the plane's normal z.
+    """Table 1 as a planar robot: two arms of three links, all axes along the plane's normal z.
 
-    With all joints at zero the arms point sideways, left to +y, right to -y. Both turn about +z, so
-    that mirror-symmetric postures have joint values of opposite sign.
+    With all joints at zero the arms point sideways, the left one to +y, the right one to -y. All
+    joints rotate about +z, so that mirror-symmetric postures have joint values of opposite sign.
+
+    Returns:
+        The robot as yourdfpy writes it.
     """
     import numpy as np
     from yourdfpy import Joint, Limit, Robot
@@ -82,7 +88,11 @@ def build_planar_dual_arm() -> yourdfpy.Robot:
 
 
 def write_planar_dual_arm(path: Path) -> None:
-    """Write the URDF file."""
+    """Write the URDF file.
+
+    Args:
+        path: the file, replaced if it exists.
+    """
     import yourdfpy
 
     urdf = yourdfpy.URDF(build_planar_dual_arm(), build_scene_graph=False, load_meshes=False)
@@ -112,7 +122,7 @@ def _box(x: float, y: float, z: float) -> object:
 
 
 def _inertial(body: Body, x: float, about_axis: float) -> object:
-    """`about_axis` is the moment about the link's own axis; the two across it are equal."""
+    """Inertia of a link; `about_axis` is the moment about its x axis, the other two are equal."""
     import numpy as np
     from yourdfpy import Inertial
 
@@ -138,7 +148,7 @@ def _base() -> yourdfpy.Link:
 
 
 def _link(name: str, body: Body, width: float, tip: bool) -> yourdfpy.Link:
-    """A link along its x axis; its box reaches half a width back, over the joint's housing."""
+    """A link along its x axis; its box extends half a width behind the joint, over its housing."""
     from yourdfpy import Collision, Cylinder, Geometry, Link
 
     back = width / 2

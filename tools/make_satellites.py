@@ -1,10 +1,9 @@
-"""The bundled satellites: a bus that carries a UR5, and one with two spatial arms.
+"""Write the bundled satellites: a bus with a UR5, and a bus with two spatial arms.
 
-Their buses, panels, mounts, shapes and postures are choices made here. Lengths, masses and inertias
-of the UR5 are those of example-robot-data (`ur_description`); the boxes are fitted around its
-meshes by `compose`.
+Their buses, panels, mounts, shapes and postures are chosen here. Lengths, masses and inertias of
+the UR5 are those of example-robot-data (`ur_description`); `compose` fits boxes around its meshes.
 
-`python -m tools.make_satellites DIRECTORY` writes the URDFs and SRDFs of both.
+Usage: `python -m tools.make_satellites urdf`, which writes URDF and SRDF of both.
 """
 
 from __future__ import annotations
@@ -16,28 +15,29 @@ from xml.etree import ElementTree
 
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.satellites.arms import Arm
-from ffsr_plan.satellites.bus import GOLD, NAVY, Bus, Panel, box_link, text
+from ffsr_plan.satellites.bus import Bus, Panel
 from ffsr_plan.satellites.composition import Mount, compose, put_together
+from ffsr_plan.satellites.urdf_xml import GOLD, NAVY, attribute_text, box_link
 
 LIMB = 0.6
-"""Length of the spatial arms' limbs [m]."""
+"""Length of a limb of the spatial arms [m]."""
 WIDTH = 0.08
-"""Of a limb, square [m]."""
+"""Width and depth of a limb [m]."""
 LIMB_MASS, YOKE_MASS = 4.0, 0.5
-"""[kg]"""
+"""Masses [kg]."""
 TURNING = (
     {"left_1": 1.0, "right_1": -1.0},
     {"left_2": 1.0, "right_2": 1.0},
     {"left_3": 1.0, "right_3": 1.0},
 )
-"""Directions for posture axes of `spatial_dual_arm`: about its posture `rest` small loops in the
-planes of these turn the base about three axes."""
+"""Posture axes for `spatial_dual_arm`: about its posture `rest`, small joint loops in the planes of
+pairs of these rotate the base about three axes."""
 
 
 def satellite_ur5() -> SpaceRobot:
-    """A bus of 1 x 1 x 1.2 m and 200 kg with two panels, a UR5 on a pedestal on its top.
+    """A bus of 1 x 1 x 1.2 m and 200 kg with two panels, and a UR5 on a pedestal on top of it.
 
-    The panels stand off to the sides (y), the arm points forward (x) with its joints at zero.
+    The panels extend sideways (y); with all joints at zero the arm points forward (x).
     """
     panels = [
         Panel((0.8, 2.0, 0.03), (0.0, sign * 1.65, 0.0), 12.0, name=f"{side}_panel")
@@ -62,11 +62,12 @@ def satellite_ur5() -> SpaceRobot:
 
 
 def spatial_dual_arm() -> SpaceRobot:
-    """A cubic bus of 20 kg whose two arms, 8.5 kg each, can turn it about every axis.
+    """A cubic bus of 20 kg whose two arms, 8.5 kg each, can rotate it about every axis.
 
-    Each arm has a shoulder about z and then y, and an elbow about y. With all joints at zero the
-    arms point sideways, left to +y, right to -y. The curvatures of the connection at the posture
-    `rest`, for the three pairs of the directions `TURNING`, point three ways.
+    Each arm has a shoulder that rotates about z and then y, and an elbow that rotates about y. With
+    all joints at zero the arms point sideways, the left one to +y, the right one to -y. At the
+    posture `rest`, the curvatures of the connection for the three pairs of the directions `TURNING`
+    are linearly independent.
     """
     booms = [
         Panel((0.06, 0.07, 0.06), (0.0, sign * 0.285, 0.0), 0.5, name=f"{side}_boom")
@@ -77,7 +78,7 @@ def spatial_dual_arm() -> SpaceRobot:
         for side, sign in (("left", 1.0), ("right", -1.0))
     ]
     postures = {  # joints 1, 2, 3 of the left arm, then of the right
-        "rest": (1.2, 0.2, -1.4, 1.2, -0.2, 1.4),  # small loops of the joints turn the bus best
+        "rest": (1.2, 0.2, -1.4, 1.2, -0.2, 1.4),  # small joint loops rotate the bus most
         "stowed": (1.3, 2.7, 2.3, -1.3, 2.7, 2.3),
         "reach": (0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     }
@@ -93,7 +94,7 @@ def spatial_dual_arm() -> SpaceRobot:
 
 
 def _limbs() -> Arm:
-    """Yoke, upper arm and forearm, the limbs along their x axes."""
+    """An arm of yoke, upper arm and forearm, the limbs along their x axes."""
     robot = ElementTree.Element("robot", name="limbs")
     middle = (LIMB / 2, 0.0, 0.0)
     ElementTree.SubElement(robot, "link", name="mount")
@@ -111,13 +112,22 @@ def _limbs() -> Arm:
         ElementTree.SubElement(joint, "parent", link=parent)
         ElementTree.SubElement(joint, "child", link=child)
         ElementTree.SubElement(joint, "axis", xyz=axis)
-        limits = {"lower": text(-2.8), "upper": text(2.8), "effort": "50", "velocity": "0.5"}
+        limits = {
+            "lower": attribute_text(-2.8),
+            "upper": attribute_text(2.8),
+            "effort": "50",
+            "velocity": "0.5",
+        }
         ElementTree.SubElement(joint, "limit", limits)
     return Arm(robot, "mount", (), "limbs", ())
 
 
 def write(folder: Path) -> None:
-    """Write URDF and SRDF files of both satellites."""
+    """Write URDF and SRDF files of both satellites.
+
+    Args:
+        folder: an existing folder; files of the same names are replaced.
+    """
     for made in (satellite_ur5(), spatial_dual_arm()):
         made.save(folder / f"{made.name}.urdf")
 

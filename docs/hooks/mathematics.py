@@ -1,7 +1,8 @@
-"""Equations as MathML, made when the site is built: browsers draw it without any script.
+"""Equations as MathML, made when the site is built.
 
-Chromium needs a font with a table of mathematical metrics to do it well, and many systems have
-none. The site therefore brings STIX Two Math along, out of the package `ziamath`.
+Browsers show MathML without a script. KaTeX or MathJax would have to be copied into the repository,
+because the site loads nothing from the network. Chromium needs a font with a table of mathematical
+metrics, which many systems lack; the site contains STIX Two Math from the package `ziamath`.
 """
 
 from __future__ import annotations
@@ -20,19 +21,19 @@ FONT = "STIXTwoMath-Regular.ttf"
 _EQUATION = re.compile(
     r'<(?P<tag>span|div) class="arithmatex">\\[(\[](?P<tex>.+?)\\[)\]]</(?P=tag)>', re.DOTALL
 )
-_TOUCHED_UP = {
-    # left as written by latex2mathml, after \Bigl
+_CORRECTIONS = {
+    # latex2mathml does not convert these after \Bigl
     r">\lbrace<": ">{<",
     r">\rbrace<": ">}<",
-    # bars that enclose and slashes are set tight
+    # no space around enclosing bars and slashes
     '<mo stretchy="false">&#x0007C;</mo>': '<mo stretchy="false" lspace="0" rspace="0">|</mo>',
     "<mo>&#x0002F;</mo>": '<mo lspace="0" rspace="0">/</mo>',
-    # browsers know no <menclose> any more; a border does the same
+    # browsers no longer support <menclose>; a border looks the same
     '<menclose notation="box">': '<mrow class="boxed">',
     "</menclose>": "</mrow>",
 }
 _PRIMED = re.compile(r"<msup>(<mi>[^<]*</mi>)<mi>(&#x0203[23];)</mi></msup>")
-"""Primes are high up and small by themselves; as superscripts they would be so twice."""
+"""Primes are raised and small already; as superscripts they would be raised twice."""
 
 
 def on_files(files: Files, config: Any) -> Files:
@@ -42,24 +43,24 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_content(text: str, page: Any, **_: Any) -> str:
-    """Replace what Arithmatex has marked as an equation."""
-    return _EQUATION.sub(lambda found: mathml(found, page.file.src_uri), text)
+    """Replace the equations that Arithmatex has marked."""
+    return _EQUATION.sub(lambda equation: mathml(equation, page.file.src_uri), text)
 
 
-def mathml(found: re.Match[str], where: str) -> str:
-    """One equation; a command that is not known stops the build."""
-    tex = html.unescape(found["tex"]).strip()
-    block = found["tag"] == "div"
+def mathml(equation: re.Match[str], page: str) -> str:
+    """MathML of one equation; an unknown command stops the build."""
+    tex = html.unescape(equation["tex"]).strip()
+    block = equation["tag"] == "div"
     try:
-        drawn = convert(tex, display="block" if block else "inline")
+        result = convert(tex, display="block" if block else "inline")
     except Exception as error:
-        raise PluginError(f"{where}: {tex}: {error!r}") from error
-    for written, meant in _TOUCHED_UP.items():
-        drawn = drawn.replace(written, meant)
-    drawn = _PRIMED.sub(r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>', drawn)
-    if "\\" in drawn:
-        raise PluginError(f"{where}: a command in {tex} was not understood")
-    return f'<div class="equation">{drawn}</div>' if block else drawn
+        raise PluginError(f"{page}: {tex}: {error!r}") from error
+    for wrong, right in _CORRECTIONS.items():
+        result = result.replace(wrong, right)
+    result = _PRIMED.sub(r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>', result)
+    if "\\" in result:
+        raise PluginError(f"{page}: unknown command in {tex}")
+    return f'<div class="equation">{result}</div>' if block else result
 
 
 def _font() -> str:

@@ -1,4 +1,4 @@
-"""The command line: `ffsr-plan demo | plan | verify | view | export | timed | robots | schema`.
+"""Commands `ffsr-plan demo | plan | verify | view | export | timed | robots | schema`.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
 plan that does not verify, 2 bad input, 130 interrupted without a plan.
@@ -10,13 +10,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.table import Table
 
-from ffsr_plan.cli.files import prepared, refuse_to_replace, unused
-from ffsr_plan.cli.planning import Options, Watched, plan_and_report
-from ffsr_plan.cli.tables import flight_rows, report_table
+from ffsr_plan.cli.files import check_replacement, check_target, unused_path
+from ffsr_plan.cli.planning import LiveOptions, Options, plan_and_report
+from ffsr_plan.cli.tables import flight_table, report_table, robot_table
 from ffsr_plan.cli.terminal import errors_on_stderr, out_console, with_spinner
-from ffsr_plan.core.errors import InvalidInput, PlanningError
+from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -29,11 +28,11 @@ Out = Annotated[
     Path | None, typer.Option(help="Directory for plan.json, plan.html and the figures.")
 ]
 PlanFile = Annotated[Path, typer.Argument(metavar="PLAN.json")]
-Port = Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 for any that is free.")]
+Port = Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 for any free one.")]
 Browser = Annotated[
     bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
 ]
-Force = Annotated[bool, typer.Option("--force", help="Replace results that are there already.")]
+Force = Annotated[bool, typer.Option("--force", help="Replace existing results.")]
 
 
 def _print_version(wanted: bool) -> None:
@@ -49,18 +48,18 @@ def options(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Say the version and stop."
+            "--version", callback=_print_version, is_eager=True, help="Show the version and exit."
         ),
     ] = False,
 ) -> None:
-    """Options that stand before a command."""
+    """Options before a command."""
 
 
 @app.command()
 def demo(out: Out = None, force: Force = False) -> None:
     """Plan, verify and show the scene of the paper's Fig. 2(a) with the default planner."""
     with errors_on_stderr():
-        target = prepared(out, force) if out is not None else unused(Path("ffsr-demo"))
+        target = check_target(out, force) if out is not None else unused_path(Path("ffsr-demo"))
         options = Options(planner="max-min-ant-system", refine=True)
         plan_and_report("fig2a", options, target, check=True)
 
@@ -74,40 +73,42 @@ def plan(
     seed: Annotated[int | None, typer.Option(help="Seed, instead of the scenario's.")] = None,
     refine: Annotated[
         bool | None,
-        typer.Option("--refine/--no-refine", help="Move the path off the lattice in the end."),
+        typer.Option("--refine/--no-refine", help="Move the path off the lattice at the end."),
     ] = None,
-    colonies: Annotated[int, typer.Option(help="Independent colonies; the best counts.")] = 1,
-    workers: Annotated[int, typer.Option(help="Processes for them.")] = 1,
+    colonies: Annotated[
+        int, typer.Option(help="Independent colonies; the best path is taken.")
+    ] = 1,
+    workers: Annotated[int, typer.Option(help="Processes for the colonies.")] = 1,
     time_limit: Annotated[
         float | None,
-        typer.Option(help="Stop searching after so many seconds; refinement comes on top."),
+        typer.Option(help="Seconds after which the search stops; refinement comes after it."),
     ] = None,
     out: Out = None,
     force: Force = False,
     duration: Annotated[
         float,
         typer.Option(
-            help="Seconds that the motion takes, for the peak momentum of the wheels "
-            "(attitude-held plans only; it goes as 1 / duration)."
+            help="Duration of the motion in seconds, for the peak momentum of the wheels "
+            "(attitude-held plans only; proportional to 1 / duration)."
         ),
     ] = 600.0,
     check: Annotated[
-        bool, typer.Option("--verify/--no-verify", help="Re-check the plan independently.")
+        bool, typer.Option("--verify/--no-verify", help="Verify the plan independently.")
     ] = True,
     watch: Annotated[
-        bool, typer.Option("--watch", help="Show the colony at work, then the plan.")
+        bool, typer.Option("--watch", help="Show the search in the browser, then the plan.")
     ] = False,
-    pace: Annotated[float, typer.Option(help="Least seconds a cycle takes while watched.")] = 0.0,
+    pace: Annotated[float, typer.Option(help="Least seconds per cycle with --watch.")] = 0.0,
     port: Port = 0,
     browser: Browser = True,
 ) -> None:
-    """Plan a scenario, verify the plan, and write it where --out says."""
+    """Plan a scenario, verify the plan, and write it to the directory --out."""
     with errors_on_stderr():
-        target = prepared(out, force) if out is not None else None
+        target = check_target(out, force) if out is not None else None
         if not watch and (port or pace):
             raise InvalidInput("--watch", False, "--watch together with --port or --pace")
-        watched = Watched(port, browser, pace) if watch else None
-        options = Options(planner, seed, refine, colonies, workers, time_limit, duration, watched)
+        live = LiveOptions(port, browser, pace) if watch else None
+        options = Options(planner, seed, refine, colonies, workers, time_limit, duration, live)
         plan_and_report(scenario, options, target, check)
 
 
@@ -116,7 +117,7 @@ def verify(
     plan_file: PlanFile,
     samples: Annotated[int, typer.Option(help="Distance checks per edge.")] = 2000,
 ) -> None:
-    """Check a saved plan again, densely and independently of the planner."""
+    """Verify a saved plan by dense samples, independently of the planner."""
     with errors_on_stderr():
         from ffsr_plan.planning.plan import Plan
 
@@ -124,7 +125,7 @@ def verify(
         report = with_spinner("verifying", lambda: loaded.verify(samples))
         out_console.print(report_table(report))
         if not report.ok:
-            raise PlanningError("the plan does not verify: " + "; ".join(report.problems))
+            raise PlanNotVerified(report.problems)
 
 
 @app.command()
@@ -132,15 +133,15 @@ def export(
     plan_file: PlanFile,
     table: Annotated[Path, typer.Argument(metavar="PATH.csv")],
     samples: Annotated[
-        int | None, typer.Option(help="Rows, evenly spaced; without, one for each node.")
+        int | None, typer.Option(help="Evenly spaced rows; one per node by default.")
     ] = None,
     force: Force = False,
 ) -> None:
-    """Write the path of a saved plan as a table, units in its header."""
+    """Write the path of a saved plan as a CSV table with units in its header."""
     with errors_on_stderr():
         from ffsr_plan.planning.plan import Plan
 
-        refuse_to_replace("PATH.csv", table, force)
+        check_replacement("PATH.csv", table, force)
         Plan.load(plan_file).to_csv(table, samples)
 
 
@@ -149,7 +150,9 @@ def timed(
     plan_file: PlanFile,
     joint_acceleration: Annotated[float | None, typer.Option(help="rad/s^2 or m/s^2")] = None,
     thruster_acceleration: Annotated[float | None, typer.Option(help="m/s^2")] = None,
-    joint_velocity: Annotated[float | None, typer.Option(help="rad/s or m/s; the URDF's")] = None,
+    joint_velocity: Annotated[
+        float | None, typer.Option(help="rad/s or m/s; by default the URDF's")
+    ] = None,
     base_velocity: Annotated[float | None, typer.Option(help="m/s")] = None,
     joint_torque: Annotated[float | None, typer.Option(help="N m or N")] = None,
     joint_jerk: Annotated[float | None, typer.Option(help="rad/s^3 or m/s^3")] = None,
@@ -157,26 +160,33 @@ def timed(
     turn_velocity: Annotated[float | None, typer.Option(help="rad/s")] = None,
     turn_acceleration: Annotated[float | None, typer.Option(help="rad/s^2")] = None,
     velocity_jump: Annotated[
-        float, typer.Option(help="Pass corners of the base's path by pulses of so many m/s.")
+        float, typer.Option(help="Velocity change in m/s of pulses at corners of the base's path.")
     ] = 0.0,
     csv: Annotated[Path | None, typer.Option(help="Write the trajectory to this table.")] = None,
-    rate: Annotated[float, typer.Option(help="Rows a second of --csv.")] = 10.0,
+    rate: Annotated[float, typer.Option(help="Rows per second of --csv.")] = 10.0,
     force: Force = False,
 ) -> None:
-    """Fly a saved plan as fast as limits allow: duration, delta-v, thrust, torques."""
-    given = {k: v for k, v in locals().items() if k not in ("plan_file", "csv", "rate", "force")}
+    """Time a saved plan as fast as the limits allow: duration, delta-v, thrust, torques."""
     with errors_on_stderr():
         from ffsr_plan.planning.plan import Plan
 
         if csv is not None:
-            refuse_to_replace("--csv", csv, force)
-        flown = Plan.load(plan_file).timed(**given)
-        summary = Table(show_header=False)
-        for name, value in flight_rows(flown):
-            summary.add_row(name, value)
-        out_console.print(summary)
+            check_replacement("--csv", csv, force)
+        flight = Plan.load(plan_file).timed(
+            joint_acceleration=joint_acceleration,
+            thruster_acceleration=thruster_acceleration,
+            joint_velocity=joint_velocity,
+            base_velocity=base_velocity,
+            joint_torque=joint_torque,
+            joint_jerk=joint_jerk,
+            thruster_jerk=thruster_jerk,
+            turn_velocity=turn_velocity,
+            turn_acceleration=turn_acceleration,
+            velocity_jump=velocity_jump,
+        )
+        out_console.print(flight_table(flight))
         if csv is not None:
-            flown.to_csv(csv, rate)
+            flight.to_csv(csv, rate)
 
 
 @app.command()
@@ -194,22 +204,12 @@ def view(
 
 @app.command()
 def robots() -> None:
-    """List the bundled robots, and the arms that `ffsr_plan.compose` mounts on a bus."""
+    """List the bundled robots, and the arms that `ffsr_plan.compose` can mount on a bus."""
     from ffsr_plan.robots.summary import robot_summaries
     from ffsr_plan.satellites.arms import arm_names
 
-    table = Table("robot", "kg", "reach", "postures", "joints", show_lines=True)
-    for robot in robot_summaries():
-        count = len(robot.joint_names)
-        table.add_row(
-            f"{robot.name}\n{count} joint{'' if count == 1 else 's'}",
-            f"{robot.mass:.4g}",
-            f"{robot.reach:.2f} m",
-            "\n".join(robot.postures),
-            "\n".join(robot.joint_names),
-        )
-    out_console.print(table)
-    out_console.print(f"Arms for a bus of your own: {', '.join(arm_names())}")
+    out_console.print(robot_table(robot_summaries()))
+    out_console.print(f"Arms for your own bus: {', '.join(arm_names())}")
 
 
 @app.command()

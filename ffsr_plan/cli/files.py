@@ -1,4 +1,4 @@
-"""Files that commands write, and what they refuse to replace."""
+"""Result files of commands, and the refusal to replace files without `--force`."""
 
 from __future__ import annotations
 
@@ -12,23 +12,44 @@ if TYPE_CHECKING:
     from ffsr_plan.planning.plan import Plan
 
 RESULTS = ("plan.json", "plan.html", "path.png", "clearance.png", "convergence.png")
+"""Files in the directory of `--out`."""
 
 
-def write_results(found: Plan, title: str, target: Path) -> None:
-    """Plan, page and figures into a directory."""
+def write_results(plan: Plan, title: str, target: Path) -> None:
+    """Write plan, page and figures into a directory.
+
+    Args:
+        plan: the plan.
+        title: of the page.
+        target: the directory, made if it is not there.
+
+    Raises:
+        InvalidInput: the directory cannot be written.
+    """
     from ffsr_plan.display.figures import write_figures
 
     try:
         target.mkdir(parents=True, exist_ok=True)
-        found.save(target / "plan.json")  # first: whatever fails later, the plan is kept
-        found.write_html(target / "plan.html", title)
-        write_figures(found, target)
+        plan.save(target / "plan.json")  # first: if anything later fails, the plan is kept
+        plan.write_html(target / "plan.html", title)
+        write_figures(plan, target)
     except OSError as error:
         raise InvalidInput("--out", str(target), f"a writable directory ({error})") from None
 
 
-def prepared(target: Path, force: bool) -> Path:
-    """Refuse before planning, not after, to overwrite results."""
+def check_target(target: Path, force: bool) -> Path:
+    """Check before planning that results can be written into a directory.
+
+    Args:
+        target: the directory; it need not exist.
+        force: whether results in it may be replaced.
+
+    Returns:
+        The directory.
+
+    Raises:
+        InvalidInput: not a writable directory, or results that may not be replaced.
+    """
     existing = next(p for p in (target, *target.absolute().parents) if p.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK):
         raise InvalidInput("--out", str(target), "a directory that can be written")
@@ -42,14 +63,20 @@ def prepared(target: Path, force: bool) -> Path:
     return target
 
 
-def refuse_to_replace(what: str, path: Path, force: bool) -> None:
-    """Raise `InvalidInput` if a file is there that nobody said to replace."""
+def check_replacement(what: str, path: Path, force: bool) -> None:
+    """Raise `InvalidInput` if a file exists and may not be replaced.
+
+    Args:
+        what: the argument, for errors.
+        path: of the file.
+        force: whether it may be replaced.
+    """
     if path.exists() and not force:
-        raise InvalidInput(what, str(path), "a file that is not there yet; --force replaces it")
+        raise InvalidInput(what, str(path), "a file that does not exist yet; --force replaces it")
 
 
-def unused(base: Path) -> Path:
-    """This path, or one with the first number that is not there yet."""
+def unused_path(base: Path) -> Path:
+    """This path if nothing is there, otherwise the path with the first free number, from 2."""
     candidate, number = base, 2
     while candidate.exists():
         candidate, number = base.with_name(f"{base.name}-{number}"), number + 1

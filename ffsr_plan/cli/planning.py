@@ -1,25 +1,34 @@
-"""Planning at the terminal: scenario and options, progress, the colony watched in a browser."""
+"""The commands `plan` and `demo`: planning with progress output, and a live view on request."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ffsr_plan.cli.files import write_results
 from ffsr_plan.cli.tables import plan_table
 from ffsr_plan.cli.terminal import err_console, out_console, with_spinner
-from ffsr_plan.core.errors import InvalidInput, PlanningError
+from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
 
 if TYPE_CHECKING:
     from ffsr_plan.planning.plan import Plan
     from ffsr_plan.scenario_files.scenario import Scenario
     from ffsr_plan.search.records import Cycle
 
+_QUIET_SECONDS = 1.0  # before the progress bar appears
 
-class Watched(NamedTuple):
-    """How the colony is shown while it works."""
+
+class LiveOptions(NamedTuple):
+    """Options of the live view.
+
+    Attributes:
+        port: of the page on 127.0.0.1; 0 for any free one.
+        browser: whether to open the page.
+        pace: least duration of a cycle [s].
+    """
 
     port: int
     browser: bool
@@ -27,7 +36,18 @@ class Watched(NamedTuple):
 
 
 class Options(NamedTuple):
-    """What the command line may say otherwise than the scenario."""
+    """Options of the command line that replace or complete those of the scenario.
+
+    Attributes:
+        planner: name of a planner, used with default settings; None for the scenario's.
+        seed: None for the scenario's.
+        refine: None for the scenario's.
+        colonies: number of independent colonies.
+        workers: number of processes.
+        time_limit: of the search [s].
+        duration: of the motion [s], for the peak momentum of the wheels.
+        live: options of the live view; None for no live view.
+    """
 
     planner: str | None = None
     seed: int | None = None
@@ -36,70 +56,92 @@ class Options(NamedTuple):
     workers: int = 1
     time_limit: float | None = None
     duration: float = 600.0
-    watched: Watched | None = None
+    live: LiveOptions | None = None
 
 
 def plan_and_report(source: str, options: Options, target: Path | None, check: bool) -> None:
-    """Plan a scenario, write and print the result, re-check it."""
-    from ffsr_plan.core.checks import number, one_of, whole_number
-    from ffsr_plan.plans.planners import PLANNERS
-    from ffsr_plan.scenario_files.scenario import read_scenario
+    """Plan a scenario, write and print the result, and verify it.
+
+    Args:
+        source: path or name of the scenario.
+        options: of the command line.
+        target: directory for the results, or None.
+        check: whether to verify the plan.
+
+    Raises:
+        PlanNotVerified: the plan does not verify; it is written and printed before.
+        InvalidInput, PlanningError: see `Scenario.load` and `plan`.
+    """
+    from ffsr_plan.core.checks import number
+    from ffsr_plan.scenario_files.scenario import Scenario
 
     duration = number("--duration", options.duration, above=0.0)
-    scenario = read_scenario(source)
-    if options.planner is not None:
-        settings = PLANNERS[one_of("--planner", options.planner, list(PLANNERS))]()
-        scenario = scenario._replace(planner=settings)
-    if options.seed is not None:
-        scenario = scenario._replace(seed=whole_number("--seed", options.seed, at_least=0))
-    if options.refine is not None:
-        scenario = scenario._replace(refine=options.refine)
-    found = planned(scenario, options) if options.watched is None else shown(scenario, options)
+    scenario = _with_options(Scenario.load(source), options)
+    run = _plan_with_progress if options.live is None else _plan_with_live_view
+    plan = run(scenario, options)
     if target is not None:
-        write_results(found, scenario.title, target)
-    report = with_spinner("verifying", found.verify) if check else None
-    out_console.print(plan_table(scenario.title, found, report, duration))
+        write_results(plan, scenario.title, target)
+    report = with_spinner("verifying", plan.verify) if check else None
+    out_console.print(plan_table(scenario.title, plan, report, duration))
     if target is not None:
         out_console.print(f"Written to {target}: open {target / 'plan.html'} in a browser.")
     if report is not None and not report.ok:
-        raise PlanningError("the plan does not verify: " + "; ".join(report.problems))
+        raise PlanNotVerified(report.problems)
 
 
-def shown(scenario: Scenario, options: Options) -> Plan:
-    """Plan while a page shows the colony, and in the end the plan."""
+def _with_options(scenario: Scenario, options: Options) -> Scenario:
+    """The scenario with planner, seed and refinement of the command line where they are given."""
+    from ffsr_plan.core.checks import one_of, whole_number
+    from ffsr_plan.plans.planners import PLANNERS
+
+    changes: dict[str, Any] = {}
+    if options.planner is not None:
+        changes["planner"] = PLANNERS[one_of("--planner", options.planner, list(PLANNERS))]()
+    if options.seed is not None:
+        changes["seed"] = whole_number("--seed", options.seed, at_least=0)
+    if options.refine is not None:
+        changes["refine"] = options.refine
+    return replace(scenario, **changes)
+
+
+def _plan_with_live_view(scenario: Scenario, options: Options) -> Plan:
+    """Plan while a page shows the search; afterwards it shows the plan."""
     from ffsr_plan.display.live_view import LiveView
 
-    watched = options.watched
-    assert watched is not None
+    live = options.live
+    assert live is not None
     if options.colonies > 1:
-        raise InvalidInput("--watch", f"{options.colonies} colonies", "a single colony to look at")
+        raise InvalidInput("--watch", f"{options.colonies} colonies", "a single colony")
     view = LiveView(
-        scenario.problem, watched.port, open_browser=watched.browser, pace=watched.pace,
+        scenario.problem,
+        live.port,
+        open_browser=live.browser,
+        pace=live.pace,
         title=scenario.title,
-    )  # fmt: skip
+    )
     with view:
-        err_console.print(f"{view.url} shows the colony at work")
-        found = planned(scenario, options, view.on_cycle)
-        view.finish(found)
-    return found
+        err_console.print(f"{view.url} shows the search")
+        plan = _plan_with_progress(scenario, options, view.on_cycle)
+        view.finish(plan)
+    return plan
 
 
-def planned(
+def _plan_with_progress(
     scenario: Scenario, options: Options, on_cycle: Callable[[Cycle], None] | None = None
 ) -> Plan:
-    """Plan with a progress bar on a terminal, once it has taken a second."""
+    """Plan with a progress bar on a terminal if the search takes more than a second."""
     from rich.progress import Progress
 
     from ffsr_plan.planning.planner import plan as make_plan
 
-    begin, followed = time.monotonic(), err_console.is_terminal
+    begin, on_terminal = time.monotonic(), err_console.is_terminal
     with Progress(console=err_console, transient=True, auto_refresh=False) as progress:
         task = progress.add_task("ants", visible=False)
 
         def show(cycle: Cycle) -> None:
             if on_cycle is not None:
                 on_cycle(cycle)
-            if followed and time.monotonic() - begin > 1.0:
+            if on_terminal and time.monotonic() - begin > _QUIET_SECONDS:
                 progress.update(
                     task,
                     visible=True,
@@ -117,5 +159,5 @@ def planned(
             colonies=options.colonies,
             workers=options.workers,
             time_limit=options.time_limit,
-            on_cycle=show if options.colonies == 1 and (followed or on_cycle) else None,
+            on_cycle=show if options.colonies == 1 and (on_terminal or on_cycle) else None,
         )

@@ -1,81 +1,65 @@
-"""Plans, re-checks and flights in a few rows."""
+"""Tables that commands print: plans, verification reports, timed plans and robots."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.table import Table
 from rich.text import Text
 
+from ffsr_plan.core.formatting import counted
+from ffsr_plan.plans.plan_summary import plan_rows
+
 if TYPE_CHECKING:
-    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.plans.plan_data import PlanData
+    from ffsr_plan.robots.summary import RobotSummary
     from ffsr_plan.trajectory.timed_plan import TimedPlan
     from ffsr_plan.verification.verify import Report
 
+_PEAK_SAMPLES = 10_001  # times at which peaks of a flight are taken
 
-def plan_table(title: str, found: Plan, report: Report | None, duration: float) -> Table:
-    """What there is to know of a plan; peak momentum of wheels for a duration [s]."""
-    from ffsr_plan.core.formatting import proven
 
-    clearances, proof = found.clearances, found.certificate
-    angles = np.degrees(found.arrival_attitude)
-    heading = Text(title) if title else None  # not markup: titles may hold brackets
-    table = Table(title=heading, show_header=False, title_justify="left")
-    table.add_row("length L", f"{found.length:.4f} m")
-    table.add_row("objective F", f"{found.objective:.4f}")
-    table.add_row(
-        "on the lattice",
-        f"F {found.lattice_objective:.4f}, "
-        + ("optimum" if found.optimum_is_exact else "lower bound")
-        + f" {found.optimum:.4f}, gap {found.gap:.3%}",
-    )
-    nodes = f"least {clearances.min():.4f} m, mean {clearances.mean():.4f} m"
-    along = f"at least {proven(proof.least_clearance)}"
-    if not len(found.problem.scene):
-        nodes = along = "no obstacles"
-    table.add_row("clearance at nodes", nodes)
-    table.add_row("proven along the motion", along)
-    table.add_row(
-        "attitude on arrival",
-        "alpha {:.3f}°, beta {:.3f}°, gamma {:.3f}°".format(*angles),
-    )
-    if found.arrival_attitude_error is not None:
-        missed = np.degrees(found.arrival_attitude_error)
-        table.add_row("goal attitude", f"missed by {missed:.2g}°, brought about by the arms")
-    if found.problem.mode.has_wheels:
-        wheels = found.wheel_momentum(duration)
-        table.add_row(
-            f"wheels, if it takes {duration:g} s",
-            "peak x {:.3g}, y {:.3g}, z {:.3g} N m s in base axes".format(*wheels.axis_peaks),
-        )
-    table.add_row(
-        "certified",
-        f"{proof.edges_free} edges free, {proof.edges_refused} refused, "
-        f"{proof.node_queries} + {proof.edge_queries} distance queries (nodes + edges)",
-    )
-    cycles = len(found.history.best)
-    early = ", interrupted: the best so far" if found.interrupted else ""
-    ran = f", seed {found.seed}, {cycles} cycles" if len(found.trails.layer) else ""
-    table.add_row("planner", f"{found.planner.name}{ran}{early}")
-    table.add_row("time", f"{found.seconds:.2f} s")
-    if report is not None:
-        for name, value in report_rows(report):
-            table.add_row(name, value)
-    return table
+def plan_table(title: str, plan: PlanData, report: Report | None, duration: float) -> Table:
+    """A plan, and its verification report if there is one.
+
+    Args:
+        title: above the table, may be empty.
+        plan: the plan.
+        report: of the verification.
+        duration: of the motion [s], for the peak momentum of the wheels.
+    """
+    rows = plan_rows(plan, duration)
+    return _two_columns([*rows, *(report_rows(report) if report else [])], title)
 
 
 def report_table(report: Report) -> Table:
-    """A re-check on its own."""
-    table = Table(show_header=False)
-    for name, value in report_rows(report):
-        table.add_row(name, value)
+    """A verification report."""
+    return _two_columns(report_rows(report))
+
+
+def flight_table(flight: TimedPlan) -> Table:
+    """A timed plan: duration, delta-v and peak loads."""
+    return _two_columns(flight_rows(flight))
+
+
+def robot_table(robots: Iterable[RobotSummary]) -> Table:
+    """Mass, size, postures and joints of robots."""
+    table = Table("robot", "kg", "reach", "postures", "joints", show_lines=True)
+    for robot in robots:
+        table.add_row(
+            f"{robot.name}\n{counted(len(robot.joint_names), 'joint')}",
+            f"{robot.mass:.4g}",
+            f"{robot.reach_bound:.2f} m",
+            "\n".join(robot.postures),
+            "\n".join(robot.joint_names),
+        )
     return table
 
 
 def report_rows(report: Report) -> Iterator[tuple[str, str]]:
-    """Names and values of a re-check."""
+    """Names and values of a verification report."""
     yield "verified", "yes" if report.ok else "NO, see below"
     yield "  samples", f"{report.samples}, at most {1e3 * report.largest_step:.2f} mm apart"
     if np.isfinite(report.least_clearance):  # there are obstacles
@@ -85,29 +69,38 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
     if report.momentum_residual is not None:
         yield "  momentum residual", f"{report.momentum_residual:.1e} relative"
     if report.center_drift is not None:
-        yield "  centre of mass", f"stays put within {report.center_drift:.1e} m"
+        yield "  centre of mass", f"moves by at most {report.center_drift:.1e} m"
     if report.wheel_momentum_error is not None:
         yield "  wheel momentum error", f"{report.wheel_momentum_error:.1e} relative"
 
 
-def flight_rows(flown: TimedPlan) -> Iterator[tuple[str, str]]:
-    """Names and values; peaks are those of ten thousand instants."""
-    robot, found = flown.motion.robot, flown.at(np.linspace(0.0, flown.duration, 10_001))
-    yield "duration", f"{flown.duration:.2f} s"
-    yield "rests on the way", f"{len(flown.rests)}, at corners of the path"
-    if len(flown.pulses):
-        largest = np.max(np.linalg.norm(flown.pulses, axis=1))
-        yield "pulses", f"{len(flown.pulses)}, the largest {largest:.3g} m/s"
-        yield "corner cut by them", f"at most {flown.corner_cut:.3g} m"
-    yield "delta-v of the translation", f"{flown.delta_v:.4g} m/s"
-    yield "peak thrust", f"{np.max(np.linalg.norm(found.thrust, axis=1)):.3g} N"
-    if flown.motion.mode.has_wheels:
+def flight_rows(flight: TimedPlan) -> Iterator[tuple[str, str]]:
+    """Names and values of a timed plan; peaks are over ten thousand instants."""
+    robot = flight.motion.robot
+    states = flight.at(np.linspace(0.0, flight.duration, _PEAK_SAMPLES))
+    yield "duration", f"{flight.duration:.2f} s"
+    yield "rests on the way", f"{len(flight.rests)}, at corners of the path"
+    if len(flight.pulses):
+        largest = np.max(np.linalg.norm(flight.pulses, axis=1))
+        yield "pulses", f"{len(flight.pulses)}, the largest {largest:.3g} m/s"
+        yield "corner cut by them", f"at most {flight.corner_cut:.3g} m"
+    yield "delta-v of the translation", f"{flight.delta_v:.4g} m/s"
+    yield "peak thrust", f"{np.max(np.linalg.norm(states.thrust, axis=1)):.3g} N"
+    if flight.motion.mode.has_wheels:
         for name, values, unit in (
-            ("torque", found.wheel_torque, "N m"),
-            ("momentum", found.wheel_momentum, "N m s"),
+            ("torque", states.wheel_torque, "N m"),
+            ("momentum", states.wheel_momentum, "N m s"),
         ):
             x, y, z = np.max(np.abs(values), axis=0)
             yield f"peak wheel {name}", f"x {x:.3g}, y {y:.3g}, z {z:.3g} {unit} in base axes"
     for k, name in enumerate(robot.joint_names):
-        peak = np.max(np.abs(found.torques[:, k]))
+        peak = np.max(np.abs(states.torques[:, k]))
         yield f"peak of {name}", f"{peak:.3g} " + ("N" if robot.prismatic[k] else "N m")
+
+
+def _two_columns(rows: Iterable[tuple[str, str]], title: str = "") -> Table:
+    heading = Text(title) if title else None  # not markup: titles may hold brackets
+    table = Table(title=heading, show_header=False, title_justify="left")
+    for name, value in rows:
+        table.add_row(name, value)
+    return table

@@ -1,4 +1,4 @@
-"""What goes to the terminal: results, errors with their exit status, signs of life."""
+"""Terminal output: results, progress, and errors with their exit status."""
 
 from __future__ import annotations
 
@@ -17,18 +17,30 @@ err_console = Console(stderr=True, highlight=False)
 
 
 def with_spinner(label: str, work: Callable[[], T]) -> T:
-    """Work, with a label that says what at."""
+    """Run `work` with a spinner and a label on standard error.
+
+    Args:
+        label: what is being done.
+        work: a function without arguments.
+
+    Returns:
+        What `work` returns.
+    """
     with err_console.status(label):
         return work()
 
 
 @contextmanager
 def errors_on_stderr() -> Iterator[None]:
-    """Errors of ours end the program: 1 no plan, 2 bad input, 130 interrupted."""
+    """Print errors of ffsr-plan on standard error and exit.
+
+    Raises:
+        typer.Exit: status 1 without a verified plan, 2 for bad input, 130 after Ctrl-C.
+    """
     try:
         yield
     except FfsrPlanError as error:
-        err_console.print("ffsr-plan: ", error, sep="", style="red", markup=False)
+        err_console.print(f"ffsr-plan: {error}", style="red", markup=False)
         raise typer.Exit(1 if isinstance(error, PlanningError) else 2) from None
     except KeyboardInterrupt:
         err_console.print("ffsr-plan: interrupted", style="red")

@@ -1,7 +1,7 @@
 """Exact distances by Coal: link to sphere (Eqs. 7 and 9) and link to link.
 
-A tree over the spheres finds the nearest pair of link and obstacle, Coal measures it. No structure
-holds all pairs, so that ten thousand spheres cost little more than ten.
+A search in the tree over the spheres finds the nearest pair of link and obstacle, and Coal measures
+its distance. All pairs are never listed, so that ten thousand spheres cost little more than ten.
 """
 
 from __future__ import annotations
@@ -13,40 +13,50 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from ffsr_plan.collision.nearest_kernels import nearest_pairs, nearest_to_each, pairs_below
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.kernels import call
 from ffsr_plan.robots.collision_shapes import sharpen
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
 
 class Nearest(NamedTuple):
-    """The nearest pair of a configuration."""
+    """The nearest pair of a configuration.
+
+    Attributes:
+        distance: [m], negative in penetration; infinite in an empty scene.
+        link: name of the link; empty in an empty scene.
+        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
+            scene.
+    """
 
     distance: float
-    """[m], negative in penetration."""
     link: str
-    other: int | str
-    """Index of the sphere, or name of the other link."""
+    obstacle: int | str | None
 
 
 class ObstacleQuery:
-    """Distances of the links to the spheres of a scene. Holds scratch data: one per thread.
+    """Distances of the links to the spheres of a scene.
+
+    It contains scratch data: every thread needs its own.
 
     Attributes:
-        count: configurations whose clearance Coal has measured so far.
+        empty: whether the scene has no spheres or the robot no shapes.
+        count: number of configurations whose clearance Coal has measured.
     """
 
     def __init__(self, robot: SpaceRobot, scene: Scene) -> None:
+        """Prepare the measurements.
 
-        from ffsr_plan.collision import nearest_kernels  # numba takes its time to import
-
-        self._robot, self._kernels = robot, nearest_kernels
+        Args:
+            robot: the robot.
+            scene: the obstacles.
+        """
+        self._robot = robot
         self._links = [robot.link_of(shape) for shape in robot.collision_model.geometryObjects]
         self._tree, self._shapes = scene.tree, robot.primitives
-        self._search = (*self._tree[:3], self._shapes.kinds)
         self._bounds_only = not bool(self._shapes.exact.all())
         self.empty = len(scene) == 0 or len(self._shapes.kinds) == 0
         self.count = 0
@@ -57,78 +67,109 @@ class ObstacleQuery:
         ]
         self._request = coal.DistanceRequest()
         sharpen(self._request)
-        self._here, self._there = coal.Transform3s.Identity(), coal.Transform3s.Identity()
+        self._shape_frame = coal.Transform3s.Identity()
+        self._ball_frame = coal.Transform3s.Identity()
 
     def distances(self, configurations: Array) -> Array:
-        """(N,) least distances [m] at (N, nq); infinite in an empty scene."""
+        """Least distances of many configurations.
+
+        Args:
+            configurations: (N, nq).
+
+        Returns:
+            (N,) distances [m], infinite in an empty scene.
+        """
         placed = shape_placements(self._robot, configurations)
         count = len(configurations)
         return self.distances_at(placed, np.arange(count), np.zeros((count, 3)))
 
     def nearest(self, q: Array) -> Nearest:
-        """The nearest pair at `q` (nq,)."""
+        """The nearest pair of link and sphere.
+
+        Args:
+            q: (nq,) configuration.
+        """
         return self.nearest_at(shape_placements(self._robot, q[None]), 0, np.zeros(3))
 
     def distances_at(self, placed: Placements, places: IntArray, shifts: Array) -> Array:
-        """(n,) least distances [m] of the shapes placed as in row `places` (n,), moved by `shifts`.
+        """Least distances of many placements, each displaced.
 
         Args:
-            placed: rows of placements.
-            places: (n,) indices of rows; best if neighbours in space follow each other.
+            placed: K placements of the shapes.
+            places: (n,) which of the K; fastest if successive ones are close in space.
             shifts: (n, 3) displacements of the whole robot [m].
+
+        Returns:
+            (n,) distances [m], infinite in an empty scene.
         """
         return self._pairs(placed, places, shifts)[0]
 
     def nearest_at(self, placed: Placements, place: int, shift: Array) -> Nearest:
-        """The nearest pair of the shapes placed as in row `place`, moved by `shift` (3,)."""
+        """The nearest pair of one placement, displaced.
+
+        Args:
+            placed: K placements of the shapes.
+            place: which of the K.
+            shift: (3,) displacement of the whole robot [m].
+        """
         least, shape, sphere = self._pairs(placed, np.array([place]), shift[None])
         if self.empty:
-            return Nearest(np.inf, "", "")
+            return Nearest(np.inf, "", None)
         return Nearest(
             float(least[0]), self._links[int(shape[0])], int(self._tree.order[sphere[0]])
         )
 
     def links_at(self, placed: Placements, place: int, shift: Array) -> Array:
-        """(g,) least distance of each shape [m]; for a hull, that of the box around it."""
+        """Least distance of each shape of one placement, displaced.
+
+        Args:
+            placed: K placements of the shapes.
+            place: which of the K.
+            shift: (3,) displacement of the whole robot [m].
+
+        Returns:
+            (g,) distances [m]; for a hull, that of the box around it, a lower bound.
+        """
         if self.empty:
             return np.full(len(self._shapes.kinds), np.inf)
         frames = placed.frames[place]
-        return np.asarray(call(self._kernels.nearest_to_each, *self._search, frames, shift))
+        return nearest_to_each(self._tree, self._shapes.kinds, frames, shift)
 
     def _pairs(
         self, placed: Placements, places: IntArray, shifts: Array
     ) -> tuple[Array, IntArray, IntArray]:
         """(n,) Coal's least distance, (n,) shape and (n,) row of the tree's spheres."""
         if self.empty:
-            nothing = np.zeros(len(places), dtype=np.int64)
-            return np.full(len(places), np.inf), nothing, nothing
+            none = np.zeros(len(places), dtype=np.int64)
+            return np.full(len(places), np.inf), none, none
         self.count += len(places)
-        _, shape, sphere, local = call(
-            self._kernels.nearest_pairs, *self._search, placed.frames, places, shifts
+        _, shape, sphere, local = nearest_pairs(
+            self._tree, self._shapes.kinds, placed.frames, places, shifts
         )
         least = self._measured(shape, sphere, local)
         if self._bounds_only:
             for k, place in enumerate(places):
-                pair = self._among_bounds(placed, place, shifts[k], least[k], shape[k], sphere[k])
+                pair = self._nearest_hull(placed, place, shifts[k], least[k], shape[k], sphere[k])
                 least[k], shape[k], sphere[k] = pair
         return least, shape, sphere
 
     def _measured(self, shape: IntArray, sphere: IntArray, local: Array) -> Array:
         """(n,) Coal's distances of shapes (n,) to spheres (n,) centred at `local` (n, 3).
 
-        Places are in the shape's frame: one ball and one placement serve all pairs.
+        Centres are in the shape's frame, so that one ball and one placement serve all pairs.
         """
-        ball, here, there, request = self._ball, self._here, self._there, self._request
+        ball, request = self._ball, self._request
+        shape_frame, ball_frame = self._shape_frame, self._ball_frame
         measures = [self._measures[i] for i in shape.tolist()]
         radii = self._tree.spheres[sphere, 3].tolist()
-        found = []
+        distances = []
         for measure, radius, center in zip(measures, radii, local, strict=True):
             ball.radius = radius
-            there.setTranslation(center)
-            found.append(measure(here, there, request, coal.DistanceResult()))
-        return np.array(found)
+            ball_frame.setTranslation(center)
+            distances.append(measure(shape_frame, ball_frame, request, coal.DistanceResult()))
+        return np.array(distances)
 
-    def _among_bounds(
+    def _nearest_hull(
         self,
         placed: Placements,
         place: int,
@@ -137,28 +178,35 @@ class ObstacleQuery:
         shape: int,
         sphere: int,
     ) -> tuple[float, int, int]:
-        """Measure what may be nearer than a pair at distance `least` that was found by bounds."""
+        """The nearest pair if some shapes are hulls, for which the search has lower bounds only.
+
+        All pairs with a bound below `least`, the measured distance of one pair, are measured in the
+        order of their bounds.
+        """
         rotations, positions = placed.rotations[place], placed.positions[place]
-        frames, below = placed.frames[place], self._kernels.pairs_below
-        bounds, shapes, rows = call(below, *self._search, frames, shift, least)
+        frames = placed.frames[place]
+        bounds, shapes, rows = pairs_below(self._tree, self._shapes.kinds, frames, shift, least)
         best = (least, shape, sphere)
         for k in np.argsort(bounds, kind="stable").tolist():
             if bounds[k] >= best[0]:
                 break
             i, row = int(shapes[k]), int(rows[k])
-            apart = self._tree.spheres[row, :3] - positions[i] - shift
-            local = (rotations[i].T @ apart)[None]
-            found = self._measured(shapes[k : k + 1], rows[k : k + 1], local)
-            best = min(best, (float(found[0]), i, row))
+            offset = self._tree.spheres[row, :3] - positions[i] - shift
+            local = (rotations[i].T @ offset)[None]
+            distance = self._measured(shapes[k : k + 1], rows[k : k + 1], local)
+            best = min(best, (float(distance[0]), i, row))
         return best
 
 
 class SelfQuery:
-    """Distances between links that are not adjacent; they depend on the joints alone.
+    """Distances between links that are not adjacent; they depend on the joint values alone.
+
+    It contains scratch data: every thread needs its own.
 
     Attributes:
         pairs: (p, 2) indices of the shapes of each pair.
-        count: configurations evaluated so far.
+        empty: whether there are no pairs.
+        count: number of configurations evaluated.
     """
 
     def __init__(self, robot: SpaceRobot) -> None:
@@ -174,14 +222,28 @@ class SelfQuery:
         self.count = 0
 
     def distances(self, q: Array) -> Array:
-        """(p,) distance of each pair [m] at `q` (nq,)."""
+        """Distance of each pair.
+
+        Args:
+            q: (nq,) configuration.
+
+        Returns:
+            (p,) distances [m], negative in penetration.
+        """
         self.count += not self.empty
         data = self._geometry_data
         pin.computeDistances(self._model, self._data, self._geometry, data, q)
         return np.array([result.min_distance for result in data.distanceResults])
 
     def distance(self, q: Array) -> float:
-        """Least distance [m] at `q` (nq,); infinite without pairs."""
+        """Least distance over all pairs.
+
+        Args:
+            q: (nq,) configuration.
+
+        Returns:
+            The distance [m]; infinite without pairs.
+        """
         if self.empty:
             return np.inf
         self.count += 1
@@ -190,19 +252,26 @@ class SelfQuery:
         return float(data.distanceResults[pair].min_distance)
 
     def nearest(self, q: Array) -> Nearest:
-        """The nearest pair at `q` (nq,)."""
-        found = self.distances(q)
+        """The nearest pair of links.
+
+        Args:
+            q: (nq,) configuration.
+        """
+        distances = self.distances(q)
         if self.empty:
-            return Nearest(np.inf, "", "")
-        pair = int(np.argmin(found))
+            return Nearest(np.inf, "", None)
+        pair = int(np.argmin(distances))
         first, second = (
             self._robot.link_of(self._geometry.geometryObjects[int(k)]) for k in self.pairs[pair]
         )
-        return Nearest(float(found[pair]), first, second)
+        return Nearest(float(distances[pair]), first, second)
 
 
 class Clearance(float):
-    """A clearance [m] that knows its pair.
+    """A clearance [m], a float, with the pair of link and obstacle.
+
+    The result of arithmetic, rounding or `min` with a float is a plain float without link and
+    obstacle.
 
     Attributes:
         link: name of the nearest link; empty in an empty scene.
@@ -212,22 +281,37 @@ class Clearance(float):
     link: str
     obstacle: int | None
 
-    def __new__(cls, distance: float, link: str, obstacle: int | None) -> Clearance:
-        """A number with a name to it."""
+    def __new__(cls, distance: float, link: str, obstacle: int | None) -> Clearance:  # noqa: D102
         clearance = super().__new__(cls, distance)
         clearance.link, clearance.obstacle = link, obstacle
         return clearance
+
+    def __repr__(self) -> str:
+        if self.obstacle is None:
+            return f"Clearance({float(self)} m, empty scene)"
+        return f"Clearance({float(self)} m, link '{self.link}', obstacle {self.obstacle})"
+
+    def __str__(self) -> str:
+        return str(float(self))
 
     def __reduce__(self) -> tuple[type, tuple[float, str, int | None]]:
         return type(self), (float(self), self.link, self.obstacle)
 
 
 def clearance(robot: SpaceRobot, scene: Scene, q: ArrayLike) -> Clearance:
-    """Least link-to-sphere distance [m] of one configuration `q` (nq,), by Coal.
+    """Least distance from a link to a sphere at one configuration, by Coal.
 
-    A number: negative in penetration, infinite in an empty scene; its attributes `link` and
-    `obstacle` name the nearest pair. For many configurations,
-    `ffsr_plan.collision.ObstacleQuery(robot, scene).distances(...)` takes (N, nq) at once.
+    For many configurations, `ObstacleQuery(robot, scene).distances` of
+    `ffsr_plan.collision.distances` takes (N, nq) at once.
+
+    Args:
+        robot: the robot.
+        scene: the obstacles.
+        q: (nq,) configuration.
+
+    Returns:
+        The distance [m], negative in penetration and infinite in an empty scene; its attributes
+        `link` and `obstacle` name the nearest pair.
 
     Raises:
         InvalidInput: not a robot, a scene or a configuration of that robot.
@@ -236,5 +320,6 @@ def clearance(robot: SpaceRobot, scene: Scene, q: ArrayLike) -> Clearance:
         raise InvalidInput("robot", robot, "a SpaceRobot")
     if not isinstance(scene, Scene):
         raise InvalidInput("scene", scene, "a Scene")
-    near = ObstacleQuery(robot, scene).nearest(robot.check_configuration("q", q))
-    return Clearance(near.distance, near.link, near.other if isinstance(near.other, int) else None)
+    pair = ObstacleQuery(robot, scene).nearest(robot.check_configuration("q", q))
+    obstacle = pair.obstacle if isinstance(pair.obstacle, int) else None
+    return Clearance(pair.distance, pair.link, obstacle)

@@ -1,36 +1,66 @@
-"""The nearest sphere to a robot, compiled; imported when it is first needed.
+"""Compiled search for the sphere nearest to the robot's shapes.
 
-Shapes are those of `primitives`, spheres those of a `SphereTree`. Distances are signed: negative by
-the depth of penetration.
+Shapes are those of `shape_arrays`, spheres those of a `SphereTree`. Distances are signed: negative
+by the depth of penetration.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Protocol
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.kernels import inlined_kernel, kernel
 from ffsr_plan.robots.shape_arrays import BOX
+from ffsr_plan.scene.sphere_tree import SphereTree
 
-_DEPTH = 64  # a tree of halves has fewer levels than that for any number of spheres
+STACK_SIZE = 64
+"""Entries of a stack for `nearest_sphere`: a tree of halves has fewer levels than that."""
 
 
-@njit(cache=True, nogil=True, inline="always")
-def _distance(kind: int, frame: Array, shift: Array, balls: Array, k: int) -> float:
-    """Signed distance [m] of a shape in its `frame`, displaced by `shift`, to row k of `balls`.
+class Spheres(Protocol):
+    """Spheres to search: a `SphereTree`, or another named tuple with these arrays of one.
 
-    A frame is a row of ``Placements.frames`; `balls` has rows of centre and radius.
+    Attributes:
+        nodes: (M, 4) centre and radius of the sphere around each node [m].
+        children: (M, 2) the two nodes below each, or the rows of a leaf.
+        spheres: (N, 4) centre and radius of each obstacle [m].
     """
-    x = balls[k, 0] - frame[9] - shift[0]
-    y = balls[k, 1] - frame[10] - shift[1]
-    z = balls[k, 2] - frame[11] - shift[2]
+
+    @property
+    def nodes(self) -> Array: ...  # noqa: D102
+
+    @property
+    def children(self) -> NDArray[np.int32]: ...  # noqa: D102
+
+    @property
+    def spheres(self) -> Array: ...  # noqa: D102
+
+
+@inlined_kernel
+def distance_to_sphere(kind: int, frame: Array, shift: Array, spheres: Array, row: int) -> float:
+    """Signed distance from a shape to a sphere, in closed form.
+
+    Args:
+        kind: ROUND or BOX.
+        frame: (15,) rotation, position and size of the shape, as in `Placements.frames`.
+        shift: (3,) displacement of the shape [m].
+        spheres: (N, 4) centre and radius [m].
+        row: which of the spheres.
+
+    Returns:
+        The distance [m]; for a hull, that of the box around it, a lower bound.
+    """
+    x = spheres[row, 0] - frame[9] - shift[0]
+    y = spheres[row, 1] - frame[10] - shift[1]
+    z = spheres[row, 2] - frame[11] - shift[2]
     a = abs(frame[0] * x + frame[3] * y + frame[6] * z)
     b = abs(frame[1] * x + frame[4] * y + frame[7] * z)
     c = abs(frame[2] * x + frame[5] * y + frame[8] * z)
-    radius: float = balls[k, 3]
+    radius: float = spheres[row, 3]
     if kind == BOX:
         a -= frame[12]
         b -= frame[13]
@@ -46,11 +76,9 @@ def _distance(kind: int, frame: Array, shift: Array, balls: Array, k: int) -> fl
     return distance - radius
 
 
-@njit(cache=True, nogil=True)
-def _search(
-    nodes: Array,
-    children: NDArray[np.int32],
-    spheres: Array,
+@kernel
+def nearest_sphere(
+    tree: Spheres,
     kind: int,
     frame: Array,
     shift: Array,
@@ -59,8 +87,23 @@ def _search(
     stack: NDArray[np.int32],
     bounds: Array,
 ) -> tuple[float, int]:
-    """The least distance of one shape below `least`, nearer nodes first."""
-    bounds[0] = _distance(kind, frame, shift, nodes, 0)
+    """Search the tree for a sphere nearer to a shape than `least`, nearer nodes first.
+
+    Args:
+        tree: spheres, at least one.
+        kind: ROUND or BOX.
+        frame: (15,) rotation, position and size of the shape, as in `Placements.frames`.
+        shift: (3,) displacement of the shape [m].
+        least: distance below which spheres count [m].
+        nearest: row to return if no sphere is nearer.
+        stack: (STACK_SIZE,) scratch memory for nodes.
+        bounds: (STACK_SIZE,) scratch memory for their distances.
+
+    Returns:
+        The least distance [m], and the row of its sphere in `tree.spheres`.
+    """
+    nodes, children, spheres = tree.nodes, tree.children, tree.spheres
+    bounds[0] = distance_to_sphere(kind, frame, shift, nodes, 0)
     stack[0] = 0
     top = 1
     while top > 0:
@@ -70,12 +113,12 @@ def _search(
         left, right = children[stack[top], 0], children[stack[top], 1]
         if left < 0:
             for k in range(-1 - left, right):
-                here = _distance(kind, frame, shift, spheres, k)
-                if here < least:
-                    least, nearest = here, k
+                distance = distance_to_sphere(kind, frame, shift, spheres, k)
+                if distance < least:
+                    least, nearest = distance, k
             continue
-        first = _distance(kind, frame, shift, nodes, left)
-        second = _distance(kind, frame, shift, nodes, right)
+        first = distance_to_sphere(kind, frame, shift, nodes, left)
+        second = distance_to_sphere(kind, frame, shift, nodes, right)
         if first < second:
             left, right, first, second = right, left, second, first
         if first < least:
@@ -87,109 +130,97 @@ def _search(
     return least, nearest
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def nearest_pairs(
-    nodes: Array,
-    children: NDArray[np.int32],
-    spheres: Array,
-    kinds: IntArray,
-    frames: Array,
-    places: IntArray,
-    shifts: Array,
+    tree: SphereTree, kinds: IntArray, frames: Array, places: IntArray, shifts: Array
 ) -> tuple[Array, IntArray, IntArray, Array]:
-    """Least distance over all shapes and spheres, for many places of the robot.
+    """Least distance over all shapes and spheres, for many placements of the robot.
 
     Args:
-        nodes: of a `SphereTree` with at least one sphere.
-        children: of the same.
-        spheres: of the same.
-        kinds: (g,) of `Primitives` with at least one shape.
-        frames: (K, g, 15) rotation, position and size of the shapes, as of `Placements`.
-        places: (n,) which of the K is meant; neighbours in space are best neighbours here.
-        shifts: (n, 3) displacement of the whole robot [m].
+        tree: spheres, at least one.
+        kinds: (g,) ROUND or BOX of the shapes, at least one.
+        frames: (K, g, 15) rotation, position and size of the shapes, as in `Placements.frames`.
+        places: (n,) row of `frames` for each query; fastest if successive rows are close in space.
+        shifts: (n, 3) displacement of the whole robot for each query [m].
 
     Returns:
-        (n,) least distance [m], (n,) shape and (n,) row of `spheres` where it is, and (n, 3) the
+        (n,) least distance [m], (n,) its shape, (n,) its row of `tree.spheres`, and (n, 3) the
         centre of that sphere in the shape's frame [m].
     """
+    spheres = tree.spheres
     count = len(places)
     least, shape, sphere = np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64)
     local = np.empty((count, 3))
-    stack, bounds = np.empty(_DEPTH, np.int32), np.empty(_DEPTH)
-    near, which = 0, 0
+    stack, bounds = np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE)
+    row, which = 0, 0
     for n in range(count):
-        here, shift = frames[places[n]], shifts[n]
-        # the pair that was nearest in the last place is near in this one
-        best = _distance(kinds[which], here[which], shift, spheres, near)
+        placed, shift = frames[places[n]], shifts[n]
+        # the nearest pair of the previous query gives a small distance to start with
+        best = distance_to_sphere(kinds[which], placed[which], shift, spheres, row)
         last = which
         for step in range(len(kinds)):
             i = last - step if step <= last else step
-            found, k = _search(
-                nodes, children, spheres, kinds[i], here[i], shift, best, -1, stack, bounds
-            )
+            distance, k = nearest_sphere(tree, kinds[i], placed[i], shift, best, -1, stack, bounds)
             if k >= 0:
-                best, near, which = found, k, i
-        least[n], shape[n], sphere[n] = best, which, near
-        frame = here[which]
+                best, row, which = distance, k, i
+        least[n], shape[n], sphere[n] = best, which, row
+        frame = placed[which]
         for axis in range(3):
             local[n, axis] = 0.0
             for c in range(3):
-                apart = spheres[near, c] - frame[9 + c] - shift[c]
-                local[n, axis] += frame[3 * c + axis] * apart
+                offset = spheres[row, c] - frame[9 + c] - shift[c]
+                local[n, axis] += frame[3 * c + axis] * offset
     return least, shape, sphere, local
 
 
-@njit(cache=True, nogil=True)
-def nearest_to_each(
-    nodes: Array,
-    children: NDArray[np.int32],
-    spheres: Array,
-    kinds: IntArray,
-    frames: Array,
-    shift: Array,
-) -> Array:
-    """(g,) least distance of each shape [m], in one place of the robot.
+@kernel
+def nearest_to_each(tree: SphereTree, kinds: IntArray, frames: Array, shift: Array) -> Array:
+    """Least distance of each shape, for one placement of the robot.
 
     Args:
-        nodes: as all below, as for `nearest_pairs`.
-        children: of the tree.
-        spheres: of the tree.
-        kinds: of the shapes.
-        frames: (g, 15) of the shapes.
+        tree: spheres, at least one.
+        kinds: (g,) ROUND or BOX of the shapes.
+        frames: (g, 15) rotation, position and size of the shapes.
         shift: (3,) displacement of the whole robot [m].
+
+    Returns:
+        (g,) least distance [m].
     """
-    count = len(kinds)
-    least = np.empty(count)
-    stack, bounds = np.empty(_DEPTH, np.int32), np.empty(_DEPTH)
-    near = 0
-    for i in range(count):
-        start = _distance(kinds[i], frames[i], shift, spheres, near)
-        least[i], near = _search(
-            nodes, children, spheres, kinds[i], frames[i], shift, start, near, stack, bounds
-        )
+    least = np.empty(len(kinds))
+    stack, bounds = np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE)
+    row = 0
+    for i in range(len(kinds)):
+        start = distance_to_sphere(kinds[i], frames[i], shift, tree.spheres, row)
+        least[i], row = nearest_sphere(tree, kinds[i], frames[i], shift, start, row, stack, bounds)
     return least
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pairs_below(
-    nodes: Array,
-    children: NDArray[np.int32],
-    spheres: Array,
-    kinds: IntArray,
-    frames: Array,
-    shift: Array,
-    limit: float,
+    tree: SphereTree, kinds: IntArray, frames: Array, shift: Array, limit: float
 ) -> tuple[Array, IntArray, IntArray]:
-    """All pairs whose distance (or bound on it) lies below `limit` [m]: distance, shape, row."""
-    found, shape, sphere = [np.inf], [0], [0]  # so that the compiler sees the types
-    stack = np.empty(_DEPTH, np.int32)
+    """All pairs whose distance, or lower bound on it, is below a limit.
+
+    Args:
+        tree: spheres, at least one.
+        kinds: (g,) ROUND or BOX of the shapes.
+        frames: (g, 15) rotation, position and size of the shapes.
+        shift: (3,) displacement of the whole robot [m].
+        limit: [m].
+
+    Returns:
+        (p,) distance [m], (p,) shape and (p,) row of `tree.spheres` of each pair.
+    """
+    nodes, children, spheres = tree.nodes, tree.children, tree.spheres
+    distances, shape, sphere = [np.inf], [0], [0]  # first entries tell the compiler the types
+    stack = np.empty(STACK_SIZE, np.int32)
     for i in range(len(kinds)):
         stack[0] = 0
         top = 1
         while top > 0:
             top -= 1
             node = stack[top]
-            if _distance(kinds[i], frames[i], shift, nodes, node) >= limit:
+            if distance_to_sphere(kinds[i], frames[i], shift, nodes, node) >= limit:
                 continue
             left, right = children[node, 0], children[node, 1]
             if left >= 0:
@@ -197,9 +228,9 @@ def pairs_below(
                 top += 2
                 continue
             for k in range(-1 - left, right):
-                here = _distance(kinds[i], frames[i], shift, spheres, k)
-                if here < limit:
-                    found.append(here)
+                distance = distance_to_sphere(kinds[i], frames[i], shift, spheres, k)
+                if distance < limit:
+                    distances.append(distance)
                     shape.append(i)
                     sphere.append(k)
-    return np.array(found[1:]), np.array(shape[1:]), np.array(sphere[1:])
+    return np.array(distances[1:]), np.array(shape[1:]), np.array(sphere[1:])

@@ -1,4 +1,4 @@
-"""Where the collision shapes are: base pose, kinematics of the arms, placement on the link."""
+"""Placements of the collision shapes in the world."""
 
 from __future__ import annotations
 
@@ -7,31 +7,39 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.robots.kinematics import turned
 from ffsr_plan.robots.robot import SpaceRobot
-from ffsr_plan.scene.scene import Scene
 
 
 class Placements(NamedTuple):
-    """The g collision shapes of a robot in the world, K times."""
+    """K placements of the g collision shapes of a robot in the world.
+
+    Attributes:
+        frames: (K, g, 15) rotation (9, row by row; shape axes to world axes), position [m] and size
+            [m] of each shape.
+    """
 
     frames: Array
-    """(K, g, 15): rotation (9, row by row; shape axes to world axes), position [m], size [m]."""
 
     @property
     def rotations(self) -> Array:
-        """(K, g, 3, 3), shape axes to world axes."""
+        """(K, g, 3, 3) rotations, shape axes to world axes."""
         return self.frames[..., :9].reshape(*self.frames.shape[:2], 3, 3)
 
     @property
     def positions(self) -> Array:
-        """(K, g, 3) [m]."""
+        """(K, g, 3) origins of the shapes in the world [m]."""
         return self.frames[..., 9:12]
 
 
 def shape_placements(robot: SpaceRobot, configurations: Array) -> Placements:
-    """Placements of all collision shapes at configurations (K, nq)."""
+    """Placements of all collision shapes.
+
+    Args:
+        robot: the robot.
+        configurations: (K, nq).
+    """
     poses = robot.tree.poses(robot.joint_values(configurations))
     shapes = robot.primitives
     base = rotations.matrix(configurations[:, 3:7])[:, None]
@@ -48,12 +56,3 @@ def shape_placements(robot: SpaceRobot, configurations: Array) -> Placements:
             axis=2,
         )
     )
-
-
-def near_track(scene: Scene, positions: Array, within: float) -> Flags:
-    """(N,) which spheres come so near [m] to any of the positions (..., 3) [m]."""
-    track = positions.reshape(-1, 3)
-    near = np.zeros(len(scene), dtype=bool)
-    for k, (center, radius) in enumerate(zip(scene.centers, scene.radii, strict=True)):
-        near[k] = np.any(np.linalg.norm(track - center, axis=1) < within + radius)
-    return near

@@ -1,4 +1,4 @@
-"""Types of arrays, and arrays made read-only."""
+"""Array types, and read-only arrays."""
 
 from __future__ import annotations
 
@@ -15,6 +15,6 @@ AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 
 
 def frozen(array: AnyArray) -> AnyArray:
-    """The same array, read-only from here on."""
+    """Make an array read-only in place and return it."""
     array.setflags(write=False)
     return array

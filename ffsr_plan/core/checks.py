@@ -1,4 +1,7 @@
-"""Checks on what users hand over: each returns the clean value or raises `InvalidInput`."""
+"""Checks of user input: each returns a clean value or raises `InvalidInput`.
+
+The first argument of each check, `what`, names the field or argument in the message.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +14,29 @@ from numpy.typing import ArrayLike
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 
-_HUGE = 1e9  # metres or radians
+_LARGEST_NUMBER = 1e9  # [m or rad]
 FARTHEST = 1e5
-"""Most metres of any coordinate in the world: farther out, floating-point numbers could not tell
-apart what `edges.ROUNDING` allows for."""
+"""Limit [m] of coordinates in the world: for larger ones, floating-point errors would exceed what
+`interval_halving.ROUNDING` allows."""
 
 
 def finite_array(
-    what: str, value: ArrayLike, shape: tuple[int, ...], at_most: float = _HUGE
+    what: str, value: ArrayLike, shape: tuple[int, ...], at_most: float = _LARGEST_NUMBER
 ) -> Array:
-    """A read-only float copy of `value`; -1 in `shape` stands for any length."""
+    """Check an array of finite numbers.
+
+    Args:
+        what: name in the message.
+        value: array or nested sequence.
+        shape: wanted shape; -1 for any length.
+        at_most: largest magnitude.
+
+    Returns:
+        Read-only float copy.
+
+    Raises:
+        InvalidInput: another shape, not numbers, or not finite.
+    """
     wanted = "x".join("N" if n < 0 else str(n) for n in shape)
     allowed = f"finite numbers of at most {at_most:g}, of shape ({wanted})"
     try:
@@ -48,7 +64,22 @@ def number(
     at_least: float = -np.inf,
     at_most: float = np.inf,
 ) -> float:
-    """A finite float strictly inside (above, below) and in [at_least, at_most]."""
+    """Check a finite number.
+
+    Args:
+        what: name in the message.
+        value: a real number; booleans are refused.
+        above: exclusive lower bound.
+        below: exclusive upper bound.
+        at_least: lower bound.
+        at_most: upper bound.
+
+    Returns:
+        The number as a float.
+
+    Raises:
+        InvalidInput: not a number, not finite or out of bounds.
+    """
     bounds = [
         f"greater than {above:g}" if above > -np.inf else "",
         f"at least {at_least:g}" if at_least > -np.inf else "",
@@ -65,7 +96,20 @@ def number(
 
 
 def whole_number(what: str, value: object, *, at_least: int, at_most: int | None = None) -> int:
-    """An int in [at_least, at_most]."""
+    """Check an integer.
+
+    Args:
+        what: name in the message.
+        value: an integer; booleans and floats are refused.
+        at_least: lower bound.
+        at_most: upper bound, if any.
+
+    Returns:
+        The number as an int.
+
+    Raises:
+        InvalidInput: not an integer, or out of bounds.
+    """
     allowed = f"a whole number of at least {at_least}"
     allowed += "" if at_most is None else f" and at most {at_most}"
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Integral):
@@ -76,24 +120,42 @@ def whole_number(what: str, value: object, *, at_least: int, at_most: int | None
 
 
 def truth(what: str, value: object) -> bool:
-    """True or False, and nothing that merely counts as one."""
+    """Check a boolean; numbers are refused."""
     if not isinstance(value, (bool, np.bool_)):
         raise InvalidInput(what, value, "True or False")
     return bool(value)
 
 
 def one_of(what: str, value: object, names: Sequence[str]) -> str:
-    """`value`, if it is one of `names`; otherwise the nearest name is suggested."""
+    """Check a name.
+
+    Args:
+        what: name of the argument in the message.
+        value: the name.
+        names: the allowed names.
+
+    Raises:
+        InvalidInput: another name; suggests the most similar one.
+    """
     if not isinstance(value, str) or value not in names:
         raise unknown_name(what, value, names)
     return value
 
 
 def unit_quaternion(what: str, value: ArrayLike) -> Array:
-    """A unit quaternion (x, y, z, w), within 1e-6 of norm one; rounding beyond that is refused.
+    """Check a unit quaternion.
 
-    The tiny remainder is divided out, because a norm of 1 + 1e-7 would show up as a momentum
-    residual of the same size.
+    It is normalised, because a norm of 1 + 1e-7 would appear as a momentum residual of that size.
+
+    Args:
+        what: name in the message.
+        value: (4,) x, y, z, w, of norm one within 1e-6.
+
+    Returns:
+        (4,) the normalised quaternion, read-only.
+
+    Raises:
+        InvalidInput: not four finite numbers, or another norm.
     """
     quat = finite_array(what, value, (4,))
     norm = float(np.linalg.norm(quat))

@@ -1,22 +1,42 @@
-"""What can go wrong, as exceptions that say what to do about it."""
+"""Exceptions."""
+# ruff: noqa: N818 - the names are part of the public contract
 
 from __future__ import annotations
 
 import difflib
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
+from ffsr_plan.core.arrays import Array
 
-_NAMED = 12  # obstacles in a message
+_MOST_OBSTACLES_NAMED = 12
+_MOST_CHARACTERS_OF_A_VALUE = 120
 
 
 class FfsrPlanError(Exception):
-    """Root of every error that ffsr-plan raises on purpose."""
+    """Root of all errors that ffsr-plan raises on purpose.
+
+    A subclass that is a dataclass holds its constructor arguments as attributes, composes the
+    message from them in `message`, and is pickled by them.
+    """
+
+    def message(self) -> str:
+        """The text of the error."""
+        return super().__str__()
+
+    def __str__(self) -> str:
+        return self.message()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        if not is_dataclass(self):
+            return super().__reduce__()  # type: ignore[return-value]
+        return type(self), tuple(getattr(self, f.name) for f in fields(self) if f.init)
 
 
-class InvalidInput(FfsrPlanError, ValueError):  # noqa: N818 - the name is part of the public contract
+@dataclass(eq=False, repr=False)
+class InvalidInput(FfsrPlanError, ValueError):
     """A value that cannot be used.
 
     Attributes:
@@ -25,215 +45,261 @@ class InvalidInput(FfsrPlanError, ValueError):  # noqa: N818 - the name is part 
         allowed: what would have been accepted.
     """
 
-    def __init__(self, what: str, value: object, allowed: str) -> None:
-        self.what = what
-        self.value = value
-        self.allowed = allowed
-        super().__init__(f"{what}: got {_shorten(value)}; allowed: {allowed}")
+    what: str
+    value: object
+    allowed: str
 
-    def __reduce__(self) -> tuple[type, tuple[str, object, str]]:
-        return type(self), (self.what, self.value, self.allowed)
+    def message(self) -> str:
+        """What is wrong, the value and what is allowed."""
+        return f"{self.what}: got {_shorten(self.value)}; allowed: {self.allowed}"
 
 
+class PlanningError(FfsrPlanError):
+    """The input is valid, but no plan exists or none was found."""
+
+
+@dataclass(eq=False, repr=False)
 class InternalError(FfsrPlanError):
-    """A broken invariant of the package itself."""
+    """An invariant of ffsr-plan is broken; not the user's fault.
 
-    def __init__(self, reason: str) -> None:
-        super().__init__(f"internal error: {reason}; please report it")
+    Attributes:
+        detail: which invariant, and the values at hand.
+    """
+
+    detail: str
+
+    def message(self) -> str:
+        """The detail, with the request to report it."""
+        return f"internal error: {self.detail}; please report it"
 
 
 class IntegrationError(FfsrPlanError):
     """A numerical integration did not converge."""
 
 
-class PlanningError(FfsrPlanError):
-    """The input is well formed, but no plan exists or none was found."""
-
-
-class _InCollision(PlanningError):  # noqa: N818 - so are the names of its kinds
-    """A prescribed configuration touches something.
+@dataclass(eq=False, repr=False)
+class _InCollision(PlanningError):
+    """A prescribed configuration is in collision.
 
     Attributes:
-        link: name of the link that touches.
-        obstacle: index of the sphere in the scene, or the name of the other link.
-        depth: penetration depth [m], zero when the two just touch.
+        link: name of the link in collision.
+        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
+            scene.
+        depth: penetration depth [m], zero in contact.
     """
 
-    where = "configuration"
+    configuration: ClassVar[str]
 
-    def __init__(self, link: str, obstacle: int | str, depth: float) -> None:
-        self.link = link
-        self.obstacle = obstacle
-        self.depth = depth
-        other = f"obstacle {obstacle}" if isinstance(obstacle, int) else f"link '{obstacle}'"
-        hint = "" if isinstance(obstacle, int) else "; an SRDF can exempt links that may touch"
-        super().__init__(
-            f"{self.where} in collision: link '{link}' is {depth:.4g} m inside {other}{hint}"
+    link: str
+    obstacle: int | str | None
+    depth: float
+
+    def message(self) -> str:
+        """The link, what it touches and how deep."""
+        hint = "; an SRDF can exempt links that may touch" if isinstance(self.obstacle, str) else ""
+        return (
+            f"{self.configuration} in collision: link '{self.link}' is {self.depth:.4g} m inside "
+            f"{_named(self.obstacle)}{hint}"
         )
-
-    def __reduce__(self) -> tuple[type, tuple[str, int | str, float]]:
-        return type(self), (self.link, self.obstacle, self.depth)
 
 
 class StartInCollision(_InCollision):
-    """The start configuration touches an obstacle or the robot itself."""
+    """The start configuration touches an obstacle or the robot itself.
 
-    where = "start"
+    Attributes:
+        link: name of the link in collision.
+        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
+            scene.
+        depth: penetration depth [m], zero in contact.
+    """
+
+    configuration = "start"
 
 
 class GoalInCollision(_InCollision):
-    """The goal configuration, at the attitude really reached there, touches something."""
+    """The goal configuration, at the attitude that results there, touches something.
 
-    where = "goal"
+    Attributes:
+        link: name of the link in collision.
+        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
+            scene.
+        depth: penetration depth [m], zero in contact.
+    """
+
+    configuration = "goal"
 
 
-class NoPath(PlanningError):  # noqa: N818 - the name is part of the public contract
-    """The lattice holds no free path; proven, not guessed.
+@dataclass(eq=False, repr=False)
+class NoPath(PlanningError):
+    """The lattice contains no free path; this is proven.
 
     Attributes:
         layer: the first layer of which no node can be reached.
-        obstacles: what blocks the way there: sphere indices and, for self-collision, link names.
+        obstacles: what closes the layer: indices of spheres in the scene and, for self-collision,
+            names of links.
+        divisions: number of divisions of the lattice; its layers are 0 .. divisions.
     """
 
-    def __init__(self, layer: int, obstacles: tuple[int | str, ...], divisions: int) -> None:
-        self.layer = layer
-        self.obstacles = obstacles
-        self.divisions = divisions
-        numbers = [str(o) for o in obstacles if isinstance(o, int)]
-        spheres = ", ".join(numbers[:_NAMED])
-        if len(numbers) > _NAMED:
-            spheres += f" and {len(numbers) - _NAMED} more"
-        links = ", ".join(f"'{o}'" for o in obstacles if isinstance(o, str))
-        blame = [
-            f"obstacles {spheres}" if spheres else "",
+    layer: int
+    obstacles: tuple[int | str, ...]
+    divisions: int
+
+    def message(self) -> str:
+        """The layer, what closes it, and which settings may help."""
+        spheres = [str(o) for o in self.obstacles if isinstance(o, int)]
+        listed = ", ".join(spheres[:_MOST_OBSTACLES_NAMED])
+        if len(spheres) > _MOST_OBSTACLES_NAMED:
+            listed += f" and {len(spheres) - _MOST_OBSTACLES_NAMED} more"
+        links = ", ".join(f"'{o}'" for o in self.obstacles if isinstance(o, str))
+        causes = [
+            f"obstacle{'s' if len(spheres) > 1 else ''} {listed}" if spheres else "",
             f"self-collision of {links}" if links else "",
         ]
-        super().__init__(
-            f"no path on this lattice: layer {layer} of {divisions} cannot be passed "
-            f"(closed by {' and '.join(filter(None, blame)) or 'the limits of the lattice'}); "
-            "a finer spacing, more half_count or more divisions may open a way"
+        return (
+            f"no path on this lattice: layer {self.layer} of {self.divisions} cannot be passed "
+            f"(closed by {' and '.join(filter(None, causes)) or 'the limits of the lattice'}); "
+            "wider or additional lattice axes, a finer spacing or more divisions may help"
         )
 
-    def __reduce__(self) -> tuple[type, tuple[int, tuple[int | str, ...], int]]:
-        return type(self), (self.layer, self.obstacles, self.divisions)
 
-
-class AttitudeOutOfReach(PlanningError):  # noqa: N818 - so are the names of its kinds
-    """The arms were not found to turn the base to the attitude that the goal demands.
+@dataclass(eq=False, repr=False)
+class AttitudeOutOfReach(PlanningError):
+    """No joint path was found that rotates the base to the attitude of the goal.
 
     Attributes:
-        wanted: angle from the start's to the goal's attitude [rad].
-        missed: angle from the attitude reached to the goal's [rad].
-        turned: how much of the way to the goal's attitude the arms were found to go [rad].
+        wanted: angle from the start attitude to the goal attitude [rad].
+        missed: angle from the attitude reached to the goal attitude [rad].
+        turned: the part of `wanted` that was reached, wanted - missed, at least 0 [rad].
     """
 
-    def __init__(self, wanted: float, missed: float) -> None:
-        self.wanted = wanted
-        self.missed = missed
-        self.turned = max(0.0, wanted - missed)
-        super().__init__(
-            f"goal attitude out of reach: the arms were found to turn the base by "
-            f"{math.degrees(self.turned):.1f} of {math.degrees(wanted):.1f} degrees; more "
-            "divisions, wider or other posture axes, or another seed, may turn it farther"
+    wanted: float
+    missed: float
+    turned: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.turned = max(0.0, self.wanted - self.missed)
+
+    def message(self) -> str:
+        """Both angles in degrees, and which settings may help."""
+        return (
+            f"goal attitude out of reach: the best joint path rotates the base by "
+            f"{math.degrees(self.turned):.1f} of {math.degrees(self.wanted):.1f} degrees; more "
+            "divisions, wider or other posture axes, or another seed may increase this"
         )
 
-    def __reduce__(self) -> tuple[type, tuple[float, float]]:
-        return type(self), (self.wanted, self.missed)
 
-
-class PoseOutOfReach(PlanningError):  # noqa: N818
+@dataclass(eq=False, repr=False)
+class PoseOutOfReach(PlanningError):
     """No joint values were found that bring a frame to the wanted pose.
 
     Attributes:
         frame: name of the frame.
-        position_missed: distance from the wanted position at the best configuration found [m].
-        attitude_missed: angle from the wanted attitude there [rad], or None if any would do.
-        configuration: (nq,) the best configuration found: a metre counts as much as a radian.
+        position_missed: distance from the wanted position at the best configuration [m].
+        attitude_missed: angle from the wanted attitude there [rad]; None if any attitude is
+            allowed.
+        configuration: (nq,) the configuration of the least error, in which one metre counts as
+            much as one radian.
     """
 
-    def __init__(
-        self,
-        frame: str,
-        position_missed: float,
-        attitude_missed: float | None,
-        configuration: NDArray[np.float64],
-    ) -> None:
-        self.frame = frame
-        self.position_missed = position_missed
-        self.attitude_missed = attitude_missed
-        self.configuration = configuration
-        turned = ""
-        if attitude_missed is not None:
-            turned = f" and {attitude_missed:.4g} rad ({math.degrees(attitude_missed):.3g} degrees)"
-        super().__init__(
-            f"pose out of reach: the best that was found for frame '{frame}' misses it by "
-            f"{position_missed:.4g} m{turned}; another base position or attitude may reach it"
+    frame: str
+    position_missed: float
+    attitude_missed: float | None
+    configuration: Array
+
+    def message(self) -> str:
+        """The errors of the best configuration, and what may help."""
+        angle = ""
+        if self.attitude_missed is not None:
+            degrees = math.degrees(self.attitude_missed)
+            angle = f" and {self.attitude_missed:.4g} rad ({degrees:.3g} degrees)"
+        return (
+            f"pose out of reach: the best configuration for frame '{self.frame}' misses it by "
+            f"{self.position_missed:.4g} m{angle}; another base position or attitude may reach it"
         )
 
-    def __reduce__(self) -> tuple[type, tuple[str, float, float | None, NDArray[np.float64]]]:
-        return type(self), (
-            self.frame, self.position_missed, self.attitude_missed, self.configuration
-        )  # fmt: skip
 
-
-class UnprovenPath(PlanningError):  # noqa: N818
-    """What the colony found could not be proven free; that there is no path is not said.
+@dataclass(eq=False, repr=False)
+class UnprovenPath(PlanningError):
+    """The path of the colony could not be proven free; this does not prove that none exists.
 
     Attributes:
         layer: the first layer that could not be reached.
-        link: name of the link that comes too near.
-        obstacle: index of the sphere, or the name of the other link.
-        distance: least distance met [m], negative in penetration.
+        link: name of the link that comes too close.
+        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
+            scene.
+        distance: least distance measured [m], negative in penetration.
+        divisions: number of divisions of the lattice; its layers are 0 .. divisions.
     """
 
-    def __init__(
-        self, layer: int, link: str, obstacle: int | str, distance: float, divisions: int
-    ) -> None:
-        self.layer = layer
-        self.link = link
-        self.obstacle = obstacle
-        self.distance = distance
-        self.divisions = divisions
-        other = f"obstacle {obstacle}" if isinstance(obstacle, int) else f"link '{obstacle}'"
-        super().__init__(
-            f"no path was found that could be proven free: on the way to layer {layer} of "
-            f"{divisions} link '{link}' comes to {distance:.4g} m from {other}; a finer spacing, "
-            "more divisions, more cycles or other posture axes may help"
+    layer: int
+    link: str
+    obstacle: int | str | None
+    distance: float
+    divisions: int
+
+    def message(self) -> str:
+        """Where the proof fails, and which settings may help."""
+        return (
+            f"no path was found that could be proven free: between layers {self.layer - 1} and "
+            f"{self.layer} of {self.divisions}, link '{self.link}' comes within "
+            f"{self.distance:.4g} m of {_named(self.obstacle)}; a finer spacing, more divisions, "
+            "more cycles or other posture axes may help"
         )
 
-    def __reduce__(self) -> tuple[type, tuple[int, str, int | str, float, int]]:
-        return type(self), (self.layer, self.link, self.obstacle, self.distance, self.divisions)
 
-
-class WorkerDied(PlanningError):  # noqa: N818 - it says what happened
+@dataclass(eq=False, repr=False)
+class WorkerDied(PlanningError):
     """A worker process ended without a result.
 
     Attributes:
         worker: its number, from 0.
-        colonies: the colonies that it was to run.
+        colonies: numbers of the colonies that it was to run.
         status: its exit status, such as `SIGKILL(-9)`.
     """
 
-    def __init__(self, worker: int, colonies: list[int], status: str) -> None:
-        self.worker, self.colonies, self.status = worker, colonies, status
-        names = ", ".join(map(str, colonies))
-        super().__init__(
-            f"worker {worker} (colonies {names}) died with exit status {status}; "
+    worker: int
+    colonies: list[int]
+    status: str
+
+    def message(self) -> str:
+        """The worker, its colonies and its exit status."""
+        colonies = ", ".join(map(str, self.colonies))
+        return (
+            f"worker {self.worker} (colonies {colonies}) died with exit status {self.status}; "
             "fewer workers need less memory"
         )
 
-    def __reduce__(self) -> tuple[type, tuple[int, list[int], str]]:
-        return type(self), (self.worker, self.colonies, self.status)
+
+@dataclass(eq=False, repr=False)
+class PlanNotVerified(PlanningError):
+    """The independent verification of a plan found a problem.
+
+    Attributes:
+        problems: what is wrong, one sentence each.
+    """
+
+    problems: tuple[str, ...]
+
+    def message(self) -> str:
+        """All problems."""
+        return "the plan does not verify: " + "; ".join(self.problems)
 
 
 def unknown_name(what: str, value: object, names: Iterable[str]) -> InvalidInput:
-    """An `InvalidInput` that lists the known names and suggests the nearest one."""
+    """An `InvalidInput` that lists the known names and suggests the most similar one."""
     known = list(names)
-    near = difflib.get_close_matches(str(value), known, n=1, cutoff=0.5)
-    hint = f" (did you mean '{near[0]}'?)" if near else ""
+    similar = difflib.get_close_matches(str(value), known, n=1, cutoff=0.5)
+    hint = f" (did you mean '{similar[0]}'?)" if similar else ""
     return InvalidInput(what, value, f"{', '.join(known) if known else 'nothing'}{hint}")
+
+
+def _named(obstacle: int | str | None) -> str:
+    if obstacle is None:
+        return "no obstacle"
+    return f"link '{obstacle}'" if isinstance(obstacle, str) else f"obstacle {obstacle}"
 
 
 def _shorten(value: object) -> str:
     text = repr(value)
-    return text if len(text) <= 120 else f"{text[:117]}..."
+    most = _MOST_CHARACTERS_OF_A_VALUE
+    return text if len(text) <= most else f"{text[: most - 3]}..."

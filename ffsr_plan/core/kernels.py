@@ -1,28 +1,111 @@
-"""A word to the user while compiled functions are made, once after an installation."""
+"""Compiled functions: numba imported at the first call, and a notice while it compiles."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache, cached_property, update_wrapper
 from threading import Timer
-from typing import Any
+from typing import Any, Literal, TypeVar, cast
 
-_PATIENCE = 1.5  # seconds; what was compiled before comes from the disk sooner, and nothing is said
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+_NOTICE = "compiling numerical kernels, once after an installation (some ten seconds in all)"
 
 
-def call(kernel: Callable[..., Any], *arguments: object) -> Any:  # noqa: ANN401 - as the kernel
-    """Call a compiled function; if this is its first call and takes its time, say why."""
-    if getattr(kernel, "overloads", True):
-        return kernel(*arguments)
-    with said_after(_PATIENCE, "compiling, once after an installation (some ten seconds in all)"):
-        return kernel(*arguments)
+class Kernel:
+    """A function that numba compiles when it is first called.
+
+    The module of a kernel can be imported without numba, whose import takes a second. Kernels call
+    one another by their plain names: numba asks a global of unknown type for `_numba_type_`, and a
+    kernel returns the type of its dispatcher. The machine code is cached on disk and releases the
+    GIL.
+
+    Attributes:
+        py_func: the Python function.
+        targetoptions: options of the dispatcher; numba reads `inline` and `py_func` of what a
+            kernel calls.
+    """
+
+    def __init__(self, function: Callable[..., Any], inline: Literal["never", "always"]) -> None:
+        self.py_func = function
+        self.targetoptions = {"inline": inline}
+        update_wrapper(self, function)
+
+    @cached_property
+    def dispatcher(self) -> Any:  # noqa: ANN401 - its type depends on numba's version
+        """The numba dispatcher, made at the first use."""
+        from numba import njit
+
+        _install_notice()
+        inline = self.targetoptions["inline"]
+        return njit(cache=True, nogil=True, inline=inline)(self.py_func)
+
+    @property
+    def _numba_type_(self) -> object:
+        return self.dispatcher._numba_type_
+
+    def __call__(self, *arguments: object) -> Any:  # noqa: ANN401, D102 - as the function
+        return self.dispatcher(*arguments)
+
+
+def kernel(function: _Function) -> _Function:
+    """Decorate a function that numba compiles at its first call; see `Kernel`.
+
+    Args:
+        function: a function of positional arguments, without Python objects.
+
+    Returns:
+        A `Kernel`; for the type checker, a function of the same signature.
+    """
+    return cast("_Function", Kernel(function, "never"))
+
+
+def inlined_kernel(function: _Function) -> _Function:
+    """Decorate a short function that numba inlines wherever another kernel calls it.
+
+    Args:
+        function: as for `kernel`.
+
+    Returns:
+        A `Kernel`; for the type checker, a function of the same signature.
+    """
+    return cast("_Function", Kernel(function, "always"))
+
+
+@cache
+def _install_notice() -> None:
+    """Write one notice to standard error when a kernel of this package starts to compile.
+
+    Numba reports compilations as events; loading from its cache on disk is none.
+    """
+    from numba.core import event
+
+    class Notice(event.Listener):
+        def __init__(self) -> None:
+            self.shown = False
+
+        def on_start(self, event: Any) -> None:  # noqa: ANN401
+            module = event.data["dispatcher"].py_func.__module__
+            if not self.shown and module.startswith("ffsr_plan."):
+                self.shown = True
+                print(f"ffsr-plan: {_NOTICE}", file=sys.stderr, flush=True)
+
+        def on_end(self, event: Any) -> None:  # noqa: ANN401
+            pass
+
+    event.register("numba:compile", Notice())  # type: ignore[no-untyped-call]
 
 
 @contextmanager
-def said_after(seconds: float, words: str) -> Iterator[None]:
-    """Say on standard error what takes so long, if it does."""
-    notice = Timer(seconds, lambda: print(f"ffsr-plan: {words}", file=sys.stderr, flush=True))
+def notify_after(seconds: float, text: str) -> Iterator[None]:
+    """Write a text to standard error if the body takes longer than some time.
+
+    Args:
+        seconds: the time [s].
+        text: what takes long.
+    """
+    notice = Timer(seconds, lambda: print(f"ffsr-plan: {text}", file=sys.stderr, flush=True))
     notice.daemon = True
     notice.start()
     try:

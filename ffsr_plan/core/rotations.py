@@ -1,7 +1,13 @@
-"""Rotations as unit quaternions (x, y, z, w): the algebra, and the ZYX angles of Eq. 2.
+"""Rotations as unit quaternions (x, y, z, w), and the ZYX angles of Eq. 2.
 
-Every function works on arrays of any leading shape. Angles (alpha, beta, gamma) [rad] stand for
-R = Rz(alpha) Ry(beta) Rx(gamma), which takes base coordinates to world coordinates.
+All functions work on arrays of any leading shape. `scipy.spatial.transform.Rotation` is not used:
+in scipy 1.13, the oldest supported version, it takes one leading dimension at most, and a product
+of small arrays takes several times longer, because each is wrapped in an object. The angles
+(alpha, beta, gamma) [rad] denote
+
+    R = Rz(alpha) Ry(beta) Rx(gamma),
+
+the matrix that maps base coordinates to world coordinates.
 """
 
 from __future__ import annotations
@@ -16,7 +22,15 @@ IDENTITY.setflags(write=False)
 
 
 def multiply(p: Array, q: Array) -> Array:
-    """Composition p q: first q, then p, as for rotation matrices."""
+    """Quaternion product p q, the rotation by q followed by p.
+
+    Args:
+        p: (..., 4) unit quaternions.
+        q: (..., 4) unit quaternions.
+
+    Returns:
+        (..., 4) unit quaternions.
+    """
     px, py, pz, pw = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
     qx, qy, qz, qw = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
     product = np.empty(np.broadcast_shapes(p.shape, q.shape))
@@ -28,7 +42,15 @@ def multiply(p: Array, q: Array) -> Array:
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Vector product along the last axis; `np.cross` takes far longer over small arrays."""
+    """Cross product along the last axis, much faster than `np.cross` for small arrays.
+
+    Args:
+        a: (..., 3).
+        b: (..., 3).
+
+    Returns:
+        (..., 3) a x b.
+    """
     product = np.empty(np.broadcast_shapes(a.shape, b.shape))
     product[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
     product[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
@@ -37,19 +59,33 @@ def cross(a: Array, b: Array) -> Array:
 
 
 def inverse(q: Array) -> Array:
-    """The opposite rotation."""
+    """Inverse rotations (..., 4) of unit quaternions (..., 4)."""
     return np.concatenate([-q[..., :3], q[..., 3:]], axis=-1)
 
 
 def exp(phi: Array) -> Array:
-    """Rotation about phi/|phi| by |phi| [rad]."""
+    """Exponential map: the rotation about phi/|phi| by |phi|.
+
+    Args:
+        phi: (..., 3) rotation vectors [rad].
+
+    Returns:
+        (..., 4) unit quaternions.
+    """
     phi = np.asarray(phi, dtype=np.float64)
     half = 0.5 * np.linalg.norm(phi, axis=-1, keepdims=True)
     return np.concatenate([0.5 * np.sinc(half / np.pi) * phi, np.cos(half)], axis=-1)
 
 
 def log(q: Array) -> Array:
-    """The rotation vector of length at most pi [rad] with exp(log(q)) = q or -q, the same pose."""
+    """Logarithm: the rotation vector with exp(log(q)) = q or -q, which are the same rotation.
+
+    Args:
+        q: (..., 4) unit quaternions.
+
+    Returns:
+        (..., 3) rotation vectors of length at most pi [rad].
+    """
     q = np.where(q[..., 3:] < 0.0, -q, q)
     sine = np.linalg.norm(q[..., :3], axis=-1, keepdims=True)
     angle = 2.0 * np.arctan2(sine, q[..., 3:])
@@ -58,7 +94,7 @@ def log(q: Array) -> Array:
 
 
 def matrix(q: Array) -> Array:
-    """Rotation matrices (..., 3, 3)."""
+    """Rotation matrices (..., 3, 3) of unit quaternions (..., 4)."""
     x, y, z, w = np.moveaxis(q, -1, 0)
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -69,22 +105,68 @@ def matrix(q: Array) -> Array:
 
 
 def rotate(q: Array, vectors: Array) -> Array:
-    """Vectors (..., 3) turned by rotations (..., 4)."""
-    return np.asarray((matrix(q) @ vectors[..., None])[..., 0])
+    """Rotate vectors.
+
+    Args:
+        q: (..., 4) unit quaternions.
+        vectors: (..., 3).
+
+    Returns:
+        (..., 3) R(q) v.
+    """
+    return (matrix(q) @ vectors[..., None])[..., 0]
 
 
 def angle_between(p: Array, q: Array) -> Array:
-    """Angle [rad] of the rotation that leads from p to q, in [0, pi]."""
-    return np.asarray(np.linalg.norm(log(multiply(inverse(p), q)), axis=-1))
+    """Angle of the rotation from p to q.
+
+    Args:
+        p: (..., 4) unit quaternions.
+        q: (..., 4) unit quaternions.
+
+    Returns:
+        (...) angles in [0, pi] [rad].
+    """
+    return np.linalg.norm(log(multiply(inverse(p), q)), axis=-1)
 
 
 def slerp(p: Array, q: Array, s: Array) -> Array:
-    """The way from p to q at constant angular velocity, shorter way round, s in [0, 1]."""
+    """Spherical interpolation: constant angular velocity, through the smaller angle.
+
+    Args:
+        p: (..., 4) rotation at s = 0.
+        q: (..., 4) rotation at s = 1.
+        s: (...) parameter in [0, 1].
+
+    Returns:
+        (..., 4) unit quaternions.
+    """
     return multiply(p, exp(np.asarray(s)[..., None] * log(multiply(inverse(p), q))))
 
 
+def level_direction(direction: Array) -> Array:
+    """The horizontal unit vector perpendicular to a direction.
+
+    Args:
+        direction: (3,) unit vector d, world axes.
+
+    Returns:
+        (3,) z x d normalised, z being the world's vertical; the world's x if d is vertical.
+    """
+    level = np.array([-direction[1], direction[0], 0.0])
+    length = float(np.linalg.norm(level))
+    return level / length if length > 1e-9 else np.array([1.0, 0.0, 0.0])
+
+
 def from_angles(angles: Array) -> Array:
-    """Quaternion of the ZYX angles (alpha, beta, gamma), Eq. 2."""
+    """Quaternions of ZYX angles, Eq. 2.
+
+    Args:
+        angles: (..., 3) alpha, beta, gamma [rad].
+
+    Returns:
+        (..., 4) unit quaternions.
+    """
     a, b, c = np.moveaxis(np.asarray(angles, dtype=np.float64), -1, 0)
     zero = np.zeros_like(a)
     about_z = exp(np.stack([zero, zero, a], axis=-1))
@@ -94,9 +176,15 @@ def from_angles(angles: Array) -> Array:
 
 
 def to_angles(q: Array) -> Array:
-    """ZYX angles (alpha, beta, gamma) [rad] of Eq. 2, beta in [-pi/2, pi/2].
+    """ZYX angles of rotations, Eq. 2.
 
-    At beta = +-pi/2 the other two turn about one axis; gamma is then put to zero.
+    At beta = +-pi/2 alpha and gamma are angles about the same axis; gamma is then zero.
+
+    Args:
+        q: (..., 4) unit quaternions.
+
+    Returns:
+        (..., 3) alpha, beta, gamma [rad], beta in [-pi/2, pi/2].
     """
     r = matrix(q)
     cos_beta = np.hypot(r[..., 0, 0], r[..., 1, 0])
@@ -112,10 +200,16 @@ def to_angles(q: Array) -> Array:
 
 
 def angle_rate_matrix(angles: Array) -> Array:
-    """E of Eq. 1, (3, 3): base angular velocity in the base frame = E (alpha', beta', gamma').
+    """E of Eq. 1: base angular velocity in the base frame = E (alpha', beta', gamma').
+
+    Args:
+        angles: (3,) alpha, beta, gamma [rad].
+
+    Returns:
+        (3, 3) E.
 
     Raises:
-        InvalidInput: beta within 1e-6 rad of +-90 degrees, where E has no inverse.
+        InvalidInput: cos(beta) below 1e-6, where E has no inverse.
     """
     _, beta, gamma = angles
     if abs(np.cos(beta)) < 1e-6:

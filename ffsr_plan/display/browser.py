@@ -1,4 +1,4 @@
-"""How a page comes to be seen: in a notebook, in a browser, or by its address alone."""
+"""Open a page in a browser or notebook."""
 
 from __future__ import annotations
 
@@ -16,18 +16,22 @@ def in_notebook() -> bool:
 
 
 def at_prompt() -> bool:
-    """Whether somebody types the statements: in a notebook, IPython or Python's own prompt."""
+    """Whether statements are typed: in a notebook, in IPython or at Python's own prompt."""
     return _shell() is not None or hasattr(sys, "ps1") or bool(sys.flags.interactive)
 
 
 def open_in_browser(url: str) -> bool:
-    """Open a page in the user's browser; whether there is one, apart from those for terminals."""
+    """Open a page in the user's browser.
+
+    Returns:
+        Whether there is one. Browsers that run in the terminal are not used.
+    """
     try:
         browser = webbrowser.get()
     except webbrowser.Error:
         return False
     if type(browser) is webbrowser.GenericBrowser and "BROWSER" not in os.environ:
-        return False  # it would take over the terminal
+        return False  # a browser that runs in the terminal
     return browser.open(url)
 
 
@@ -38,14 +42,17 @@ def serve(
 
     Args:
         page: the HTML text.
-        port: 0 for any that is free.
-        block: whether to return only when Ctrl-C has ended it; by default in scripts, whose end
-            would be the server's, and not where statements are typed.
-        open_browser: whether to open the user's browser; by default unless in a notebook, which
-            shows the page by itself.
+        port: TCP port; 0 for any free one.
+        block: whether to wait for Ctrl-C, which ends the server. By default this is done in
+            scripts, because the server ends with the process, and not at a prompt.
+        open_browser: whether to open the user's browser; by default it is opened except from a
+            notebook, which shows the page itself.
+
+    Returns:
+        The server.
 
     Raises:
-        InvalidInput: a port that cannot be had, or what is neither True, False nor None.
+        InvalidInput: a port that cannot be used, or a switch that is not True, False or None.
     """
     block = not at_prompt() if block is None else truth("block", block)
     opens = not in_notebook() if open_browser is None else truth("open_browser", open_browser)

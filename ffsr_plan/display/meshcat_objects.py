@@ -1,53 +1,63 @@
-"""Meshcat objects: solids, spheres by the thousand, ribbons; and a log of the commands."""
+"""Meshcat objects (solids, instanced spheres, ribbons) and a log of meshcat commands."""
 
 from __future__ import annotations
 
 import base64
-from typing import Any
+from typing import Any, TypeAlias
 
 import coal
 import numpy as np
 import pinocchio as pin
+from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array
 
+MeshcatNode: TypeAlias = Any
+"""A node of meshcat's tree; meshcat has no types."""
+MeshcatObject: TypeAlias = Any
+"""A geometry, material or mesh of meshcat."""
+
 
 class CommandLog:
-    """Stands in for meshcat's window: keeps the commands, in order, instead of sending them.
+    """Replacement of meshcat's window that keeps the commands in order instead of sending them.
 
-    meshcat names its objects by the clock and the machine; here they are numbered, so that the same
-    plan gives the same page.
+    meshcat derives the names of its objects from the time and the machine. Here they are numbers,
+    so that equal plans give equal pages.
+
+    Attributes:
+        commands: packed by msgpack and encoded as base64, ready for the page's script.
     """
 
     def __init__(self) -> None:
         self.commands: list[str] = []
         self._names: dict[str, str] = {}
 
-    def send(self, command: Any) -> None:  # noqa: ANN401 - meshcat has no types
+    def send(self, command: MeshcatObject) -> None:
         """Keep a command, packed as meshcat would send it."""
         import umsgpack
 
         packed = umsgpack.packb(self._renumber(command.lower()))
         self.commands.append(base64.b64encode(packed).decode())
 
-    def _renumber(self, value: Any) -> Any:  # noqa: ANN401 - any part of a command
+    def _renumber(self, value: MeshcatObject) -> MeshcatObject:
+        """The same part of a command with numbered names."""
         if isinstance(value, dict):
-            return {key: self._name(entry) if key in ("uuid", "geometry", "material")
-                    and isinstance(entry, str) else self._renumber(entry)
-                    for key, entry in value.items()}  # fmt: skip
+            return {key: self._entry(key, entry) for key, entry in value.items()}
         if isinstance(value, list):
             return [self._renumber(entry) for entry in value]
         return value
 
-    def _name(self, uuid: str) -> str:
-        return self._names.setdefault(uuid, f"n{len(self._names)}")
+    def _entry(self, key: str, value: MeshcatObject) -> MeshcatObject:
+        if key not in ("uuid", "geometry", "material") or not isinstance(value, str):
+            return self._renumber(value)
+        return self._names.setdefault(value, f"n{len(self._names)}")
 
 
-def solids(shape: pin.GeometryObject) -> list[tuple[Any, Array]]:
-    """Meshcat geometries of a shape, each with its placement in the shape's frame."""
+def solids(shape: pin.GeometryObject) -> list[tuple[MeshcatObject, Array]]:
+    """Meshcat geometries of a shape, each with its placement (4, 4) in the shape's frame."""
     import meshcat.geometry as mg
 
-    solid: Any = shape.geometry
+    solid = shape.geometry
     if isinstance(solid, coal.Box):
         return [(mg.Box([float(2.0 * h) for h in solid.halfSide]), np.eye(4))]
     if isinstance(solid, coal.Sphere):
@@ -62,22 +72,30 @@ def solids(shape: pin.GeometryObject) -> list[tuple[Any, Array]]:
     if isinstance(solid, coal.Convex):
         corners = np.array(solid.points())
         faces = [solid.polygons(k) for k in range(solid.num_polygons)]
-        loose = corners[[[t[0], t[1], t[2]] for t in faces]].reshape(-1, 3)  # so edges stay sharp
-        return [(mg.TriangularMeshGeometry(loose, np.arange(len(loose)).reshape(-1, 3)), np.eye(4))]
+        corners = corners[[[t[0], t[1], t[2]] for t in faces]].reshape(-1, 3)  # for sharp edges
+        triangles = np.arange(len(corners)).reshape(-1, 3)
+        return [(mg.TriangularMeshGeometry(corners, triangles), np.eye(4))]
     faces = [solid.tri_indices(k) for k in range(solid.num_tris)]
     triangles = np.array([[t[0], t[1], t[2]] for t in faces])
     vertices = np.array(solid.vertices()) * np.asarray(shape.meshScale)
     return [(mg.TriangularMeshGeometry(vertices, triangles), np.eye(4))]
 
 
-def instances(centers: Array, radii: Array, rings: int, material: Any) -> Any:  # noqa: ANN401
-    """All spheres as copies of one: thousands are drawn in one go, and turn without stutter."""
+def instances(centers: Array, radii: Array, rings: int, material: MeshcatObject) -> MeshcatObject:
+    """Many spheres as instances of one, so that thousands are drawn in one call.
+
+    Args:
+        centers: (N, 3) [m].
+        radii: (N,) [m].
+        rings: parallels of latitude of the triangulated sphere.
+        material: of all spheres.
+    """
     import meshcat.geometry as mg
 
-    class Instances(mg.Mesh):  # type: ignore[misc]  # what three.js reads, meshcat does not know
+    class Instances(mg.Mesh):  # type: ignore[misc]  # three.js reads this type, meshcat lacks it
         _type = "InstancedMesh"
 
-        def lower(self) -> Any:  # noqa: ANN401
+        def lower(self) -> MeshcatObject:
             placed = np.zeros((len(radii), 4, 4))
             placed[:, [0, 1, 2], [0, 1, 2]] = radii[:, None]
             placed[:, 3, :3], placed[:, 3, 3] = centers, 1.0  # by columns
@@ -85,15 +103,22 @@ def instances(centers: Array, radii: Array, rings: int, material: Any) -> Any:  
             data["object"] |= {
                 "count": len(radii),
                 "instanceMatrix": {"array": np.round(placed, 6).ravel().tolist()},
-                "frustumCulled": False,  # it would be judged by the one sphere at the origin
+                "frustumCulled": False,  # three.js would test the one sphere at the origin
             }
             return data
 
     return Instances(sphere(1.0, rings), material)
 
 
-def ribbon(segments: Array, widths: Array, colours: Array, up: Array) -> Any:  # noqa: ANN401
-    """One mesh of flat quads along segments (k, 2, 3), facing `up`."""
+def ribbon(segments: Array, widths: Array, colours: Array, up: Array) -> MeshcatObject:
+    """One mesh of flat quadrilaterals along segments.
+
+    Args:
+        segments: (k, 2, 3) ends [m].
+        widths: (k,) [m].
+        colours: (k, 3) red, green, blue in [0, 1].
+        up: (3,) unit vector that the quadrilaterals face.
+    """
     import meshcat.geometry as mg
 
     along = segments[:, 1] - segments[:, 0]
@@ -116,12 +141,12 @@ def ribbon(segments: Array, widths: Array, colours: Array, up: Array) -> Any:  #
     )
 
 
-def sphere(radius: float, rings: int = 28) -> Any:  # noqa: ANN401 - meshcat has no types
-    """A sphere of radius [m], round enough to be seen close up."""
+def sphere(radius: float, rings: int = 28) -> MeshcatObject:
+    """A sphere of radius [m] with `rings` parallels of latitude."""
     import meshcat.geometry as mg
 
     class Sphere(mg.Sphere):  # type: ignore[misc]  # meshcat has no types
-        def lower(self, object_data: Any) -> Any:  # noqa: ANN401
+        def lower(self, object_data: MeshcatObject) -> MeshcatObject:
             return super().lower(object_data) | {
                 "widthSegments": rings * 10 // 7,
                 "heightSegments": rings,
@@ -130,7 +155,7 @@ def sphere(radius: float, rings: int = 28) -> Any:  # noqa: ANN401 - meshcat has
     return Sphere(radius)
 
 
-def _translation(vector: Any) -> Array:  # noqa: ANN401 - any three numbers
+def _translation(vector: ArrayLike) -> Array:
     placement = np.eye(4)
     placement[:3, 3] = vector
     return placement

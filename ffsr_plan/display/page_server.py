@@ -1,4 +1,4 @@
-"""`PageServer`: a page for browsers on this machine, served by threads of this process."""
+"""Local web server for one page and its messages."""
 
 from __future__ import annotations
 
@@ -9,40 +9,39 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from html import escape
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from types import TracebackType
 from typing import Any
 from urllib.parse import urlsplit
 
 from ffsr_plan.core.checks import whole_number
 from ffsr_plan.core.errors import InvalidInput
 
-HOST = "127.0.0.1"  # not the machine's other addresses: nobody else is to see a plan
+HOST = "127.0.0.1"  # not the other addresses of the machine, so that nobody else sees a plan
 _NAMES = (HOST, "localhost")
-_HEARTBEAT = 5.0  # seconds after which a silent listener is asked whether it is still there
-_QUIET = 30.0  # seconds that a connection may stay open without a word
-_PARTING = 2.0  # seconds that threads have to end
-_HEIGHT = 540  # of the frame in a notebook [px]
+_HEARTBEAT = 5.0  # period [s] of empty messages, which reveal closed connections
+_IDLE_TIMEOUT = 30.0  # [s] after which a connection without a request is closed
+_STOP_TIMEOUT = 2.0  # [s] that threads have to end
+_FRAME_HEIGHT = 540  # in a notebook [px]
 
 
 class PageServer:
-    """Serves one page on 127.0.0.1, and messages to those who listen.
+    """Serves one page on 127.0.0.1, and messages to pages that listen.
 
-    It starts when it is made, and ends with `stop`, at the end of a `with` block, or with the
-    process. A notebook shows it as a frame.
+    It runs from its creation until `stop`, the end of a `with` block or the end of the process. A
+    notebook shows it as a frame.
 
     Attributes:
-        url: where the page is.
+        url: address of the page.
     """
 
     def __init__(self, page: str, port: int = 0) -> None:
-        """Start to serve.
+        """Start the server.
 
         Args:
             page: the HTML text.
-            port: 0 for any that is free.
+            port: TCP port; 0 for any free one.
 
         Raises:
-            InvalidInput: a port that cannot be had, such as one in use.
+            InvalidInput: a port that cannot be used, for example because it is in use.
         """
         port = whole_number("port", port, at_least=0, at_most=65535)
         self._changed = threading.Condition()
@@ -54,7 +53,7 @@ class PageServer:
         try:
             self._http = _Http((HOST, port), _Handler)
         except OSError as error:
-            raise InvalidInput("port", port, f"one that is free, 0 for any ({error})") from None
+            raise InvalidInput("port", port, f"a free port, or 0 for any ({error})") from None
         self._http.pages = self
         self.url = f"http://{HOST}:{self._http.server_address[1]}/"
         self._thread = threading.Thread(
@@ -63,31 +62,32 @@ class PageServer:
         self._thread.start()
 
     def publish(self, message: Callable[[], str]) -> None:
-        """Send listeners a message of one line, written out when somebody is there to read it.
+        """Send a message to the listeners, in place of an earlier one that is not yet sent.
 
-        It takes the place of an earlier one that has not been sent yet.
+        Args:
+            message: returns the text, of one line; called only if somebody listens.
         """
         with self._changed:
             self._message, self._number = message, self._number + 1
             self._changed.notify_all()
 
-    def replace(self, page: str, farewell: str, patience: float = 5.0) -> None:
-        """Serve another page from now on, and tell listeners, who are to load it again.
+    def replace(self, page: str, last_message: str, timeout: float = 5.0) -> None:
+        """Serve another page from now on, and wait until the listeners have loaded it.
 
         Args:
             page: the HTML text.
-            farewell: the message to listeners, of one line.
-            patience: most seconds to wait until they have it.
+            last_message: text of one line that makes the listeners load the page again.
+            timeout: greatest time to wait [s].
         """
         with self._changed:
             self._page, wanted = page.encode(), self._sent + self._listeners
-            self.publish(lambda: farewell)
-            self._changed.wait_for(lambda: self._sent >= wanted or self._over, patience)
+            self.publish(lambda: last_message)
+            self._changed.wait_for(lambda: self._sent >= wanted or self._over, timeout)
 
-    def wait_for_listener(self, patience: float) -> bool:
-        """Wait until some page listens, `patience` seconds at most; whether one does."""
+    def wait_for_listener(self, timeout: float) -> bool:
+        """Wait until a page listens, at most `timeout` [s]; return whether one does."""
         with self._changed:
-            return self._changed.wait_for(lambda: self._listeners > 0, patience)
+            return self._changed.wait_for(lambda: self._listeners > 0, timeout)
 
     def wait(self) -> None:
         """Wait until the server is stopped, or for Ctrl-C, which stops it."""
@@ -95,17 +95,17 @@ class PageServer:
             self._stopped.wait()
 
     def stop(self) -> None:
-        """End all threads and free the port; what was published last is still sent."""
+        """End all threads and free the port. The message published last is still sent."""
         with self._changed:
             if self._over:
                 return
             self._over = True
             self._changed.notify_all()
-            self._changed.wait_for(lambda: self._listeners == 0, _PARTING)
+            self._changed.wait_for(lambda: self._listeners == 0, _STOP_TIMEOUT)
         self._http.shutdown()
         self._http.server_close()
-        self._thread.join(_PARTING)
-        self._http.hang_up()
+        self._thread.join(_STOP_TIMEOUT)
+        self._http.close_connections()
         self._stopped.set()
 
     def page(self) -> bytes:
@@ -119,7 +119,7 @@ class PageServer:
             self._changed.notify_all()
 
     def messages(self) -> Iterator[str]:
-        """The latest message, and each one after it, until the server stops; "" now and then."""
+        """The newest message and those after it until the server stops, and "" as a heartbeat."""
         seen = 0
         with self._changed:
             self._listeners += 1
@@ -145,61 +145,58 @@ class PageServer:
     def __enter__(self) -> PageServer:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.stop()
 
     def _repr_html_(self) -> str:
         return (
-            f'<iframe src="{escape(self.url)}" width="100%" height="{_HEIGHT}" '
+            f'<iframe src="{escape(self.url)}" width="100%" height="{_FRAME_HEIGHT}" '
             'style="border: 0" allowfullscreen></iframe>'
         )
 
 
 class _Http(ThreadingHTTPServer):
-    """Knows its connections, so that it can hang up."""
+    """Tracks open connections so that `stop` can close them."""
 
     daemon_threads = True
     pages: PageServer
 
     def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - those of the base class
-        self._lines: dict[threading.Thread, socket.socket] = {}
+        self._connections: dict[threading.Thread, socket.socket] = {}
         super().__init__(*arguments)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:  # noqa: ANN401
         """Answer one connection, in a thread of its own."""
-        here = threading.current_thread()
-        self._lines[here] = request
+        thread = threading.current_thread()
+        self._connections[thread] = request
         try:
             super().process_request_thread(request, client_address)
         finally:
-            del self._lines[here]
+            del self._connections[thread]
 
-    def hang_up(self) -> None:
-        """End the connections that are still open, and their threads."""
-        for thread, line in list(self._lines.items()):
-            with suppress(OSError):  # it has ended by itself
-                line.shutdown(socket.SHUT_RDWR)
-            thread.join(_PARTING)
+    def close_connections(self) -> None:
+        """Close the connections that are still open, and end their threads."""
+        for thread, connection in list(self._connections.items()):
+            with suppress(OSError):  # already closed
+                connection.shutdown(socket.SHUT_RDWR)
+            thread.join(_STOP_TIMEOUT)
 
     def handle_error(self, request: Any, client_address: Any) -> None:  # noqa: ANN401
-        """Browsers hang up when they like; that is no error."""
+        """Report an error unless a browser has closed the connection."""
         if not isinstance(sys.exc_info()[1], (ConnectionError, TimeoutError)):
             super().handle_error(request, client_address)
 
 
 class _Handler(BaseHTTPRequestHandler):
+    """Answers GET requests for the page and its messages."""
+
     server: _Http
-    timeout = _QUIET
+    timeout = _IDLE_TIMEOUT
     server_version, sys_version = "ffsr-plan", ""
 
     def do_GET(self) -> None:
         path = urlsplit(self.path).path
-        if not self._asked_by_name():
+        if not self._names_this_machine():
             self.send_error(403, "only for 127.0.0.1 and localhost")
         elif path == "/":
             self._send_page()
@@ -208,8 +205,8 @@ class _Handler(BaseHTTPRequestHandler):
         else:
             self.send_error(404)
 
-    def _asked_by_name(self) -> bool:
-        """Whether the request names this machine: a site whose name leads here does not."""
+    def _names_this_machine(self) -> bool:
+        """Whether the request names this machine, not a foreign site that resolves to 127.0.0.1."""
         try:
             (host,) = self.headers.get_all("Host", [])
             return urlsplit(f"//{host}").hostname in _NAMES
@@ -238,4 +235,4 @@ class _Handler(BaseHTTPRequestHandler):
         self.end_headers()
 
     def log_message(self, *arguments: object) -> None:
-        """Nothing: the terminal is the caller's."""
+        """Print nothing."""

@@ -1,17 +1,68 @@
-"""Ants' trails and obstacles close to the motion, for pictures of a plan."""
+"""Sampled motion, ants' trails and nearby obstacles: the data of pictures of a plan."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ffsr_plan.collision.shape_placements import near_track, shape_placements
+from ffsr_plan.collision.shape_placements import Placements, shape_placements
+from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.plans.plan_data import PlanData
+from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.scene.scene import Scene
 
-_SAMPLES_PER_EDGE = 8
+_SOLID_COUNT = 60  # scenes of at most so many obstacles are drawn solid as a whole
+_SOLID_DISTANCE = 0.8  # in larger scenes, distance [m] from the robot up to which they are
+
+
+class MotionFrames(NamedTuple):
+    """Configurations of a robot with the kinematics that pictures need, computed once.
+
+    Attributes:
+        robot: the robot.
+        configurations: (N, nq) base pose in the world [m, quaternion xyzw] and joints.
+        rotations: (N, n, 3, 3) link axes to world axes, the base first, then as Pinocchio's joints.
+        origins: (N, n, 3) origins of the links in the world [m].
+        placements: collision shapes in the world.
+    """
+
+    robot: SpaceRobot
+    configurations: Array
+    rotations: Array
+    origins: Array
+    placements: Placements
+
+    def bounding_spheres(self) -> tuple[Array, Array]:
+        """Spheres around the base origin and around each of the g collision shapes.
+
+        Returns:
+            Centres (N, g + 1, 3) in the world [m] and radii (g + 1,) [m], that of the origin zero.
+        """
+        centers = np.concatenate([self.origins[:, :1], self.placements.positions], axis=1)
+        return centers, np.append(0.0, np.linalg.norm(self.robot.primitives.sizes, axis=1))
+
+    def tip_tracks(self) -> dict[str, Array]:
+        """Tracks (N, 3) of the tip of each arm in the world [m], by the name of its last joint.
+
+        The tip is the middle of the last collision shape. Arms without one are left out.
+        """
+        model, shapes = self.robot.model, self.robot.collision_model.geometryObjects
+        inner = set(model.parents[2:])
+        last = {shape.parentJoint: k for k, shape in enumerate(shapes)}
+        tips = [j for j in range(2, model.njoints) if j not in inner and j in last]
+        return {str(model.names[j]): self.placements.positions[:, last[j]] for j in tips}
+
+
+def motion_frames(robot: SpaceRobot, configurations: Array) -> MotionFrames:
+    """Kinematics of a robot at configurations (N, nq)."""
+    poses = robot.tree.poses(robot.joint_values(configurations))
+    base = rotations.matrix(configurations[:, 3:7])[:, None]
+    origins = (base @ poses.origins[..., None])[..., 0] + configurations[:, None, :3]
+    placements = shape_placements(robot, configurations)
+    return MotionFrames(robot, configurations, base @ poses.rotations, origins, placements)
 
 
 def trail_segments(plan: PlanData, most: int = 3000) -> tuple[Array, Array]:
@@ -19,12 +70,12 @@ def trail_segments(plan: PlanData, most: int = 3000) -> tuple[Array, Array]:
 
     Args:
         plan: the plan.
-        most: number of edges; the strongest are taken.
+        most: greatest number of edges; the strongest are taken.
 
     Returns:
-        Ends (k, 2, 3) of the edges, base origin in the world [m], and strengths (k,) in [0, 1]:
-        half for all the pheromone ever laid on the edge, half for the ants that walked it, on
-        logarithmic scales, so that early trails show too.
+        Ends (k, 2, 3) of the edges, base origin in the world [m], and strengths (k,) in [0, 1].
+        Half of the strength stands for the pheromone ever laid on the edge, half for the ants that
+        walked it. Both scales are logarithmic, so that early trails are visible too.
     """
     lattice, trails = plan.lattice, plan.trails
     if not len(trails.layer):
@@ -37,15 +88,35 @@ def trail_segments(plan: PlanData, most: int = 3000) -> tuple[Array, Array]:
     return np.stack([begin, end], axis=1), strength[order]
 
 
-def obstacles_near(plan: PlanData, within: float) -> Flags:
-    """(N,) the spheres that come closer than `within` [m] to the middle of a shape of the robot.
+def near_track(scene: Scene, positions: Array, within: float) -> Flags:
+    """Spheres that come close to a track.
 
-    Sampled at eight configurations an edge; for pictures of scenes with many obstacles.
+    Args:
+        scene: the obstacles.
+        positions: (..., 3) points of the track [m], at least one.
+        within: greatest distance of a point from the surface of a sphere [m].
+
+    Returns:
+        (N,) whether each sphere does.
     """
-    samples = _SAMPLES_PER_EDGE * plan.motion.edges + 1
-    q = plan.at(np.linspace(0.0, 1.0, samples))
-    positions = shape_placements(plan.problem.robot, q).positions
-    return near_track(plan.problem.scene, positions, within)
+    from scipy.spatial import cKDTree
+
+    if not len(scene):
+        return np.zeros(0, dtype=bool)
+    distances, _ = cKDTree(positions.reshape(-1, 3)).query(scene.centers)
+    near: Flags = distances < within + scene.radii
+    return near
+
+
+def drawn_solid(scene: Scene, positions: Array) -> Flags:
+    """(N,) which obstacles pictures draw solid; the others are faint, so that the robot is visible.
+
+    Up to 60 obstacles are all drawn solid, of more than that those closer than 0.8 m to one of the
+    points (..., 3) [m], as a rule the middles of the robot's shapes along the motion.
+    """
+    if len(scene) <= _SOLID_COUNT:
+        return np.ones(len(scene), dtype=bool)
+    return near_track(scene, positions, _SOLID_DISTANCE)
 
 
 def _logarithmic(amount: NDArray[Any]) -> Array:

@@ -1,42 +1,38 @@
-"""What a picture shows, whether of a plan or of a colony at work: robot, obstacles, trails."""
+"""Meshcat scene of a problem: light, camera, robot, obstacles, trails and tracks."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, Flags
-from ffsr_plan.display.meshcat_objects import instances, ribbon, solids
-from ffsr_plan.lattice.layered_lattice import path_frame
+from ffsr_plan.display.meshcat_objects import MeshcatNode, instances, ribbon, solids
+from ffsr_plan.display.projection import view_axes, visible_shapes
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
-FEW, NEAR = 60, 0.8  # obstacles that are all drawn solid; beyond that, only those so near [m]
-TRACK, TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)
-_TRIANGLES = 90_000  # of near and of far obstacles; where they are many, they are less round
-_START, _GOAL, _OBSTACLE, _FAR = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
-_GLOW = np.array([(0.09, 0.06, 0.20), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
+TRACK, TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)  # colours of the base's and the tips' tracks
+_TRIANGLES = 90_000  # of solid and of faint obstacles each; more obstacles are drawn less round
+START, GOAL, _OBSTACLE, _FAINT = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
+_GLOW = np.array([(0.14, 0.10, 0.29), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
 
 
-def set_up(
-    viewer: Any,  # noqa: ANN401 - meshcat has no types
-    problem: Problem,
-    configurations: Array,
-) -> dict[str, float]:
-    """Light, background, and the path frame turned so that the travel runs from left to right.
+def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) -> dict[str, float]:
+    """Set light and background, and rotate the scene so that the path runs from left to right.
 
     Args:
         viewer: meshcat's root.
         problem: what is shown.
-        configurations: (N, nq) between which the camera is to see all.
+        centers: (..., g, 3) centres of spheres around the robot in the world [m], all of which the
+            camera has to see.
+        radii: (g,) their radii [m].
 
     Returns:
-        What the page needs to place the camera.
+        Width and height of the scene [m], field of view [degrees] and elevation of the camera
+        [rad], from which the page's script computes the distance of the camera.
     """
     for name in ("/Grid", "/Axes"):
         viewer[name].set_property("visible", False)
@@ -48,62 +44,53 @@ def set_up(
     viewer["/Cameras/default/rotated/<object>"].set_property("fov", fov)
     axes = view_axes(problem)
     scene = problem.scene
-    shapes = shape_placements(problem.robot, configurations).positions
-    points = [np.vstack([configurations[:, :3], shapes.reshape(-1, 3)]) @ axes.T]
-    points += [scene.centers @ axes.T + s * scene.radii[:, None] for s in (-1.0, 1.0)]
+    points: list[Array] = []
+    for sign in (-1.0, 1.0):
+        points.append((centers @ axes.T + sign * radii[:, None]).reshape(-1, 3))
+        points.append(scene.centers @ axes.T + sign * scene.radii[:, None])
     cloud = np.vstack(points)
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     root = np.eye(4)
     root[:3, :3] = axes
     root[:3, 3] = -0.5 * (low + high)
     viewer.set_transform(root)
-    margin = 0.8  # beyond the middles of the links
+    margin = 0.8  # around the scene [m]
     width, height = high[0] - low[0] + margin, high[1] - low[1] + margin
     return {"width": width, "height": height, "fov": fov, "elevation": math.radians(62.0)}
 
 
-def view_axes(problem: Problem) -> Array:
-    """(3, 3) rows: directions in the world that appear to the right, to the back and upwards."""
-    if np.linalg.norm(problem.travel) < 1e-9:
-        return np.eye(3)
-    frame = path_frame(problem.travel)
-    return np.array([frame[:, 2], frame[:, 0], frame[:, 1]])
-
-
-def add_obstacles(viewer: Any, scene: Scene, near: Flags) -> None:  # noqa: ANN401 - meshcat
-    """Spheres; those not `near` (N,) are faint, so that the motion can be seen among many."""
+def add_obstacles(viewer: MeshcatNode, scene: Scene, drawn_solid: Flags) -> None:
+    """Add the spheres of a scene; those that are not `drawn_solid` (N,) are faint."""
     import meshcat.geometry as mg
 
     solid = mg.MeshPhongMaterial(color=_OBSTACLE, shininess=60)
-    faint = mg.MeshPhongMaterial(color=_FAR, opacity=0.13, depthWrite=False, shininess=10)
-    for name, chosen, material in (("near", near, solid), ("far", ~near, faint)):
+    faint = mg.MeshPhongMaterial(color=_FAINT, opacity=0.13, depthWrite=False, shininess=10)
+    for name, chosen, material in (("near", drawn_solid, solid), ("far", ~drawn_solid, faint)):
         if chosen.any():
-            share = math.sqrt(_TRIANGLES / np.count_nonzero(chosen) / 3.0)
-            rings = int(np.clip(share, 6, 28))
+            rings = int(np.clip(math.sqrt(_TRIANGLES / np.count_nonzero(chosen) / 3.0), 6, 28))
             spheres = instances(scene.centers[chosen], scene.radii[chosen], rings, material)
             viewer[name].set_object(spheres)
 
 
-def add_ends(viewer: Any, robot: SpaceRobot, start: Array, goal: Array) -> None:  # noqa: ANN401
-    """The robot at the start (nq,), and ghosts of it at start and goal (nq,)."""
+def add_ends(viewer: MeshcatNode, robot: SpaceRobot, start: Array, goal: Array) -> None:
+    """Add the robot at the start (nq,), and transparent copies of it at start and goal (nq,)."""
     add_robot(viewer["robot"], robot, start)
-    for name, colour, q in (("start", _START, start), ("goal", _GOAL, goal)):
+    for name, colour, q in (("start", START, start), ("goal", GOAL, goal)):
         add_robot(viewer["ghosts"][name], robot, q, colour)
 
 
-def add_robot(
-    viewer: Any,  # noqa: ANN401 - meshcat has no types
-    robot: SpaceRobot,
-    q: Array,
-    ghost: int | None = None,
-) -> None:
-    """Visual shapes (of a link without any, its collision shapes), one node a joint, at `q`."""
+def add_robot(viewer: MeshcatNode, robot: SpaceRobot, q: Array, ghost: int | None = None) -> None:
+    """Add a robot, one meshcat node for each joint and below it the shapes of its link.
+
+    Args:
+        viewer: the node that receives the robot.
+        robot: its visual shapes are shown, of a link without any its collision shapes.
+        q: (nq,) configuration.
+        ghost: colour 0xRRGGBB of a transparent copy; by default the robot's own colours.
+    """
     import meshcat.geometry as mg
 
-    visible = list(robot.visual_model.geometryObjects)
-    seen = {shape.parentFrame for shape in visible}
-    visible += [g for g in robot.collision_model.geometryObjects if g.parentFrame not in seen]
-    for k, shape in enumerate(visible):
+    for k, shape in enumerate(visible_shapes(robot)):
         red, green, blue, _ = (round(255 * float(c)) for c in shape.meshColor)
         material = (
             mg.MeshPhongMaterial(color=(red << 16) + (green << 8) + blue, shininess=50)
@@ -120,30 +107,40 @@ def add_robot(
         viewer[f"joint_{joint}"].set_transform(data.oMi[joint].homogeneous)
 
 
-def add_trails(viewer: Any, segments: Array, strength: Array, up: Array) -> None:  # noqa: ANN401
-    """Trails (k, 2, 3) [m] as ribbons facing `up`; width and glow by strength (k,), 0 .. 1."""
-    wide = 0.008 + 0.035 * strength**2
-    colours = np.stack(
-        [np.interp(strength, np.linspace(0, 1, len(_GLOW)), c) for c in _GLOW.T], axis=1
-    )
+def glow(strength: Array) -> Array:
+    """(k, 3) colours of trails of strength (k,) in [0, 1], from dark violet to yellow."""
+    stops = np.linspace(0.0, 1.0, len(_GLOW))
+    return np.stack([np.interp(strength, stops, channel) for channel in _GLOW.T], axis=1)
+
+
+def add_trails(viewer: MeshcatNode, segments: Array, strength: Array, up: Array) -> None:
+    """Add trails as ribbons whose width and colour show their strength.
+
+    Args:
+        viewer: the node that receives them.
+        segments: (k, 2, 3) ends in the world [m].
+        strength: (k,) in [0, 1].
+        up: (3,) direction that the ribbons face.
+    """
+    widths = 0.008 + 0.035 * strength**2
     raised = segments - (0.01 - 0.004 * strength)[:, None, None] * up  # strong above faint
-    _add_ribbon(viewer, ribbon(raised, wide, colours, up))
+    _add_ribbon(viewer, ribbon(raised, widths, glow(strength), up))
 
 
 def add_track(
-    viewer: Any,  # noqa: ANN401 - meshcat has no types
+    viewer: MeshcatNode,
     points: Array,
     width: float,
     colour: tuple[float, float, float],
     up: Array,
 ) -> None:
-    """A ribbon of one width [m] and colour through points (N, 3) [m], facing `up`."""
+    """Add a ribbon of one width [m] and colour through points (N, 3) [m], facing `up` (3,)."""
     pieces = np.stack([points[:-1], points[1:]], axis=1)
     count = len(pieces)
     _add_ribbon(viewer, ribbon(pieces, np.full(count, width), np.tile(colour, (count, 1)), up))
 
 
-def _add_ribbon(viewer: Any, mesh: Any) -> None:  # noqa: ANN401 - meshcat has no types
+def _add_ribbon(viewer: MeshcatNode, mesh: MeshcatNode) -> None:
     import meshcat.geometry as mg
 
     material = mg.MeshBasicMaterial(vertexColors=True, side=2, transparent=False)

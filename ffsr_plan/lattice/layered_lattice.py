@@ -9,6 +9,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.rotations import level_direction
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.problem import Problem
 
@@ -23,10 +24,7 @@ def path_frame(travel: Array) -> Array:
     Along the world's z axis, x' is the world's x.
     """
     z = travel / np.linalg.norm(travel)
-    x = np.array([-z[1], z[0], 0.0])  # world z cross z'
-    across = float(np.linalg.norm(x))
-    x = x / across if across > 1e-9 else np.array([1.0, 0.0, 0.0])
-    y = np.cross(z, x)
+    y = np.cross(z, level_direction(z))
     y /= np.linalg.norm(y)
     return np.column_stack([np.cross(y, z), y, z])
 
@@ -68,7 +66,7 @@ class LayeredLattice:
         self.origin = len(self.indices) // 2
         if axes:
             columns = {"lateral": 0, "normal": 1}
-            frame = path_frame(problem.travel)
+            frame = path_frame(problem.base_displacement)
             self.directions = frozen(np.array([frame[:, columns[name]] for name in lattice.axes]))
             spacing = np.array([a.spacing for a in axes])
             self.offsets = frozen((self.indices * spacing) @ self.directions)
@@ -76,8 +74,8 @@ class LayeredLattice:
             self.directions = frozen(np.zeros((0, 3)))
             self.offsets = frozen(np.zeros((1, 3)))
         progress = np.arange(lattice.divisions + 1) / lattice.divisions
-        along = problem.start[:3] + progress[:, None] * problem.travel
-        along[-1] = problem.start[:3] + problem.travel
+        along = problem.start[:3] + progress[:, None] * problem.base_displacement
+        along[-1] = problem.start[:3] + problem.base_displacement
         self.nominal = Motion(problem.robot, problem.mode, problem.start, problem.goal, along)
 
     @property
@@ -104,7 +102,7 @@ class LayeredLattice:
     @cached_property
     def base_travel(self) -> Array:
         """(n, n) distance that the base origin covers over an edge [m]."""
-        step = self.problem.travel / self.divisions
+        step = self.problem.base_displacement / self.divisions
         apart = self.offsets[None] - self.offsets[:, None]
         return frozen(np.linalg.norm(step + apart, axis=2))
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from numba import njit
-
 from ffsr_plan.core.arrays import Array, States
+from ffsr_plan.core.kernels import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def refuse_near(
     status: States, tails: Array, heads: Array, time: float, met: Array, depth: float
 ) -> None:

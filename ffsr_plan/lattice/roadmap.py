@@ -9,7 +9,6 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
 from ffsr_plan.core.errors import InvalidInput, NoPath
-from ffsr_plan.core.kernels import call
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
@@ -178,14 +177,14 @@ class Roadmap:
 
     def _closing(self, layer: int) -> tuple[int | str, ...]:
         """What blocks the edges of a layer that were looked at, and the nodes they lead to."""
-        offsets, names = self.lattice.offsets, set[int | str]()
+        offsets, nearest = self.lattice.offsets, []
         for (i, tail, head), verdict in self._verdicts.items():
             if i == layer and not verdict.free:
-                near = self.prover.nearest(i, offsets[tail], offsets[head], verdict.time)
-                names.add(near.other)
+                nearest.append(self.prover.nearest(i, offsets[tail], offsets[head], verdict.time))
         if layer + 1 < self.lattice.divisions:
             for at in offsets[~self.admissible[layer + 1]]:
-                names.add(self.prover.nearest(layer + 1, at, at, 0.0).other)
+                nearest.append(self.prover.nearest(layer + 1, at, at, 0.0))
+        names = {pair.obstacle for pair in nearest if pair.obstacle is not None}
         return tuple(sorted(names, key=lambda name: (isinstance(name, str), name)))
 
 
@@ -210,4 +209,4 @@ def rule_out(
     from ffsr_plan.lattice.refusal_kernel import refuse_near
 
     met = (1.0 - t) * tails[edge[0]] + t * heads[edge[1]]
-    call(refuse_near, status, tails, heads, t, met, depth)
+    refuse_near(status, tails, heads, t, met, depth)

@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, States
-from ffsr_plan.core.kernels import call
 
 
 def lazy_shortest_path(
@@ -38,7 +37,7 @@ def lazy_shortest_path(
     costs[0, origin] = 0.0
     first = 0
     while True:
-        call(extend, first, edge_costs, node_costs, status, costs, before)
+        extend(first, edge_costs, node_costs, status, costs, before)
         if not np.isfinite(costs[m, origin]):
             return None
         path = np.empty(m + 1, dtype=np.int64)

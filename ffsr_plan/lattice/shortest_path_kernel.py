@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ffsr_plan.core.arrays import Array, IntArray, States
+from ffsr_plan.core.kernels import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def extend(
     first: int,
     edge_costs: Array,

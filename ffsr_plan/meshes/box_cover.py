@@ -1,8 +1,8 @@
-"""A few boxes around a mesh: plain shapes, which every reader of a URDF knows.
+"""Cover of a mesh by a few boxes, a shape that every reader of a URDF knows.
 
-The mesh is cut into slabs across one of its axes, and each slab put into a box along the axes. All
-that a closed surface encloses lies in the boxes: from a point inside, the surface is met within the
-point's own slab both ways along the other two axes.
+The mesh is cut into slabs across one of its axes, and the surface in each slab is put into a box
+along the axes. The boxes contain all that a closed surface encloses: a line from an enclosed point
+along one of the other two axes meets the surface on both sides of the point, within its slab.
 """
 
 from __future__ import annotations
@@ -13,32 +13,42 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 
-MOST = 3
-"""Boxes around one mesh."""
-GAIN = 0.1
+MOST_BOXES = 3
+"""Limit of the number of boxes around one mesh."""
+LEAST_GAIN = 0.1
 """Least share of the volume that one more box must save."""
-_CUTS = 24  # slabs to choose from
+_SLABS = 24  # fine slabs, which boxes combine
 _GRID = 1e-4  # [m], to which boxes are widened: short numbers, the same on every machine
 
 
 class Box(NamedTuple):
-    """A box along the axes of a mesh's frame."""
+    """A box along the axes of a mesh's frame.
+
+    Attributes:
+        low: (3,) least coordinates [m].
+        high: (3,) greatest coordinates [m].
+    """
 
     low: Array
-    """(3,) [m]."""
     high: Array
-    """(3,) [m]."""
 
 
 def boxes_around(triangles: Array) -> list[Box]:
-    """Up to `MOST` boxes of little volume around a surface of triangles (k, 3, 3) [m]."""
+    """Cover a closed surface by up to `MOST_BOXES` boxes of little volume.
+
+    Args:
+        triangles: (k, 3, 3) corners of the surface's triangles [m].
+
+    Returns:
+        The boxes, in the order along one axis.
+    """
     cost, best = np.inf, []
     for axis in range(3):
         lows, highs = _fine_slabs(triangles, axis)
         for boxes in _partitions(lows, highs):
             volume = sum(float(np.prod(box.high - box.low)) for box in boxes)
-            # what is equal but for rounding is decided by order
-            weighed = volume * (1.0 - GAIN) ** -len(boxes)
+            # the first of partitions that are equal except for rounding wins
+            weighed = volume * (1.0 - LEAST_GAIN) ** -len(boxes)
             if weighed < cost * (1.0 - 1e-6):
                 cost, best = weighed, boxes
     return best
@@ -47,22 +57,22 @@ def boxes_around(triangles: Array) -> list[Box]:
 def _fine_slabs(triangles: Array, axis: int) -> tuple[Array, Array]:
     """Boxes around the surface between equidistant planes across an axis: corners (n, 3), (n, 3).
 
-    Slabs with nothing in them are left out.
+    Empty slabs are left out.
     """
     tails, tips = triangles.reshape(-1, 3), np.roll(triangles, -1, axis=1).reshape(-1, 3)
-    planes = np.linspace(tails[:, axis].min(), tails[:, axis].max(), _CUTS + 1)
-    lows, highs = np.full((_CUTS, 3), np.inf), np.full((_CUTS, 3), -np.inf)
+    planes = np.linspace(tails[:, axis].min(), tails[:, axis].max(), _SLABS + 1)
+    lows, highs = np.full((_SLABS, 3), np.inf), np.full((_SLABS, 3), -np.inf)
 
     def enclose(points: Array, slab: IntArray) -> None:
         np.minimum.at(lows, slab, points)
         np.maximum.at(highs, slab, points)
 
     begin, end = (
-        np.clip(np.searchsorted(planes, points[:, axis], side="right") - 1, 0, _CUTS - 1)
+        np.clip(np.searchsorted(planes, points[:, axis], side="right") - 1, 0, _SLABS - 1)
         for points in (tails, tips)
     )
     enclose(tails, begin)
-    tails, tips = tails[begin != end], tips[begin != end]  # the few edges from slab to slab
+    tails, tips = tails[begin != end], tips[begin != end]  # edges that cross planes
     low = np.minimum(tails[:, axis], tips[:, axis])
     high = np.maximum(tails[:, axis], tips[:, axis])
     for k, plane in enumerate(planes[1:-1]):
@@ -76,7 +86,7 @@ def _fine_slabs(triangles: Array, axis: int) -> tuple[Array, Array]:
 
 
 def _partitions(lows: Array, highs: Array) -> list[list[Box]]:
-    """Neighbouring slabs put together into 1 .. `MOST` boxes, each of the least total volume."""
+    """For 1 .. `MOST_BOXES` boxes, the partition of the slabs with the least total volume."""
     n = len(lows)
     low = [_down(np.minimum.accumulate(lows[i:])) for i in range(n)]
     high = [_up(np.maximum.accumulate(highs[i:])) for i in range(n)]
@@ -84,18 +94,18 @@ def _partitions(lows: Array, highs: Array) -> list[list[Box]]:
     for i in range(n):
         high[i] = np.maximum(high[i], low[i] + _GRID)
         volume[i, i + 1 :] = np.prod(high[i] - low[i], axis=1)
-    least, found = volume[0], [[0] * (n + 1)]
-    partitions = [_boxes(low, high, found, n)]
-    for _ in range(1, min(MOST, n)):
+    least, begins = volume[0], [[0] * (n + 1)]
+    partitions = [_boxes(low, high, begins, n)]
+    for _ in range(1, min(MOST_BOXES, n)):
         totals = least[:, None] + volume
-        found = [*found, totals.argmin(axis=0).tolist()]  # where the last box begins
+        begins = [*begins, totals.argmin(axis=0).tolist()]  # first slab of the last box
         least = totals.min(axis=0)
-        partitions.append(_boxes(low, high, found, n))
+        partitions.append(_boxes(low, high, begins, n))
     return partitions
 
 
 def _boxes(low: list[Array], high: list[Array], begins: list[list[int]], end: int) -> list[Box]:
-    """The boxes of a partition, traced back from its end."""
+    """The boxes of a partition, traced back from the last slab."""
     boxes = []
     for begin in reversed(begins):
         first, last = begin[end], end - begin[end] - 1
@@ -105,8 +115,8 @@ def _boxes(low: list[Array], high: list[Array], begins: list[list[int]], end: in
 
 
 def _down(values: Array) -> Array:
-    """To the grid; what is a hair below a line of it counts as on it."""
-    return np.asarray((np.floor(values / _GRID + 1e-6) * _GRID).round(7))
+    """Round down to the grid; values just below a grid line count as on it."""
+    return (np.floor(values / _GRID + 1e-6) * _GRID).round(7)
 
 
 def _up(values: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Meshes that a URDF names: where they lie, their triangles, the corners of their convex hulls."""
+"""Mesh files: addresses as in a URDF, triangles, and corners of convex hulls."""
 
 from __future__ import annotations
 
@@ -14,9 +14,16 @@ _SUFFIXES = (".stl", ".obj", ".dae", ".ply")
 
 
 def find(address: str, folders: Sequence[str]) -> Path | None:
-    """The file behind `package://...`, `file://...` or a plain path; None where there is none.
+    """Look up a mesh address.
 
-    Nothing is ever fetched: any other scheme has no file.
+    Nothing is downloaded: an address with another scheme has no file.
+
+    Args:
+        address: `package://...`, `file://...` or a plain path.
+        folders: folders in which package and relative addresses are looked up, in this order.
+
+    Returns:
+        Path of the file; None if there is none.
     """
     scheme, divider, rest = address.rpartition("://")
     if divider and scheme not in ("package", "file"):
@@ -27,19 +34,39 @@ def find(address: str, folders: Sequence[str]) -> Path | None:
 
 
 def hull_corners(address: str, folders: Sequence[str], where: str) -> Array:
-    """(n, 3) corners of a mesh's convex hull [m], before the URDF's scale, in the mesh's frame.
+    """Corners of the convex hull of a mesh, before the scale of the URDF.
 
-    The unit of length that a .dae names is applied; its upward axis is not.
+    The unit of length of a .dae file is applied; its up axis is ignored.
+
+    Args:
+        address: address of the file; see `find`.
+        folders: folders in which it is looked up.
+        where: robot and link, for the message.
+
+    Returns:
+        (n, 3) corners in the mesh's frame [m].
 
     Raises:
-        InvalidInput: `where` (link), the address, and what is wrong with it.
+        InvalidInput: no such file, one that cannot be read, or a flat mesh.
     """
     vertices = _mesh(address, folders, where)[0]
     return frozen(hull(vertices, where, address)[0])
 
 
 def surface(address: str, folders: Sequence[str], where: str) -> Array:
-    """(k, 3, 3) corners of a mesh's triangles [m]; see `hull_corners`."""
+    """Triangles of a mesh, before the scale of the URDF; see `hull_corners`.
+
+    Args:
+        address: address of the file; see `find`.
+        folders: folders in which it is looked up.
+        where: robot and link, for the message.
+
+    Returns:
+        (k, 3, 3) corners of the triangles in the mesh's frame [m].
+
+    Raises:
+        InvalidInput: no such file, or one that cannot be read.
+    """
     vertices, triangles = _mesh(address, folders, where)
     return frozen(vertices[triangles])
 
@@ -48,15 +75,15 @@ def _mesh(address: str, folders: Sequence[str], where: str) -> tuple[Array, IntA
     """Vertices (n, 3) [m], their unit applied, and triangles (k, 3)."""
     path = find(address, folders)
     if path is None:
-        looked = ", ".join(folders) or "no folder"
+        searched = ", ".join(folders) or "no folder"
         raise InvalidInput(
-            where, address, f"a file of this machine (package:// and plain paths: in {looked})"
+            where, address, f"a file of this machine (package:// and plain paths: in {searched})"
         )
     if path.suffix.lower() not in _SUFFIXES:
         raise InvalidInput(where, address, f"a mesh file: {', '.join(_SUFFIXES)}")
     try:
         vertices, triangles = _read(path)
-    except Exception as error:  # whatever a parser trips over in a file of any content
+    except Exception as error:  # parsers raise many types for a file of arbitrary content
         raise InvalidInput(where, address, f"a mesh file that can be read ({error})") from None
     if len(vertices) < 4 or not np.isfinite(vertices).all():
         raise InvalidInput(where, address, "a mesh of at least four finite vertices")
@@ -74,7 +101,16 @@ def _read(path: Path) -> tuple[Array, IntArray]:
 
 
 def hull(points: Array, where: str, address: str) -> tuple[Array, Array]:
-    """Corners (n, 3) and outward triangles (k, 3) of the convex hull of points.
+    """Convex hull of points.
+
+    Args:
+        points: (m, 3) [m].
+        where: robot and link, for the message.
+        address: name of the mesh, for the message.
+
+    Returns:
+        (n, 3) corners [m], and (k, 3) indices of the corners of its triangles, counterclockwise
+        from outside.
 
     Raises:
         InvalidInput: the points span no volume.
@@ -82,14 +118,14 @@ def hull(points: Array, where: str, address: str) -> tuple[Array, Array]:
     from scipy.spatial import ConvexHull, QhullError
 
     try:
-        found = ConvexHull(points)
+        qhull = ConvexHull(points)
     except QhullError:
         raise InvalidInput(where, address, "a mesh that is not flat") from None
-    place = np.full(len(points), -1)
-    place[found.vertices] = np.arange(len(found.vertices))
-    triangles = place[found.simplices]
-    corners = points[found.vertices]
+    index = np.full(len(points), -1)
+    index[qhull.vertices] = np.arange(len(qhull.vertices))
+    triangles = index[qhull.simplices]
+    corners = points[qhull.vertices]
     a, b, c = corners[triangles.T]
-    inward = np.sum(np.cross(b - a, c - a) * found.equations[:, :3], axis=1) < 0.0
+    inward = np.sum(np.cross(b - a, c - a) * qhull.equations[:, :3], axis=1) < 0.0
     triangles[inward] = triangles[inward][:, ::-1]
     return corners, triangles

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from ffsr_plan.core.arrays import frozen
 from ffsr_plan.core.checks import finite_array, number, truth, whole_number
 from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
-from ffsr_plan.core.text_files import write_whole
+from ffsr_plan.core.text_files import write_text
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.planners import PLANNERS
-from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
+from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import Containers
 from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
@@ -148,8 +148,6 @@ def from_dict(data: dict[str, Any]) -> PlanData:
     """The inverse of `to_dict`."""
     given = data["problem"]
     settings = dict(data["planner"])
-    lattice = given["lattice"]
-    axes = {k: Axis(**lattice[k]) for k in ("lateral", "normal") if lattice[k] is not None}
     problem = Problem(
         _robot_from_dict(given["robot"]),
         Scene(
@@ -159,12 +157,7 @@ def from_dict(data: dict[str, Any]) -> PlanData:
         ),
         start=given["start"],
         goal=given["goal"],
-        lattice=Lattice(
-            divisions=lattice["divisions"],
-            lateral=axes.get("lateral"),
-            normal=axes.get("normal"),
-            postures=[_posture_axis(entry) for entry in lattice["postures"]],
-        ),
+        lattice=Lattice(**given["lattice"]),
         mode=given["mode"],
         **{name: given[name] for name in _PLAIN},
     )
@@ -220,17 +213,11 @@ def _motion(problem: Problem, data: dict[str, Any]) -> Motion:
     return motion
 
 
-def _posture_axis(entry: dict[str, Any]) -> PostureAxis:
-    if entry["posture"]:
-        return PostureAxis.towards(entry["posture"], entry["levels"])
-    return PostureAxis(dict(entry["joints"]), entry["half_count"], entry["spacing"])
-
-
 def write(plan: PlanData, path: Path) -> None:
     """Write `path`; an unfinished file never takes its place."""
     data = to_dict(plan)
     text = json.dumps({"sha256": digest(data), **data}, allow_nan=False, indent=1)
-    write_whole("plan file", path, text)
+    write_text("plan file", path, text)
 
 
 def read(path: Path) -> PlanData:

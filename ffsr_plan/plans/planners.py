@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
@@ -16,9 +17,9 @@ PLANNERS: dict[str, type[Planner]] = {
 }
 
 
-def default_planner(problem: Problem) -> Planner:
+def default_planner(lattice: Lattice) -> Planner:
     """`PostureAnnealing` on a lattice with posture axes, else `MaxMinAntSystem`."""
-    return PostureAnnealing() if problem.lattice.postures else MaxMinAntSystem()
+    return PostureAnnealing() if lattice.postures else MaxMinAntSystem()
 
 
 def planner_of(planner: Planner | str | None, problem: Problem) -> Planner:
@@ -28,7 +29,7 @@ def planner_of(planner: Planner | str | None, problem: Problem) -> Planner:
         InvalidInput: an unknown name, or no planner.
     """
     if planner is None:
-        return default_planner(problem)
+        return default_planner(problem.lattice)
     if isinstance(planner, str):
         return PLANNERS[one_of("planner", planner, list(PLANNERS))]()
     if not isinstance(planner, tuple(PLANNERS.values())):

@@ -9,12 +9,15 @@ from ffsr_plan.problem.problem import Problem
 
 
 def path_length(problem: Problem, offsets: Array, displaced: Array | None = None) -> float:
-    """L of Eq. 6 [m]: sum of sqrt(delta_d^2 + |offset change|^2) over the edges.
+    """Length of Eq. 6: sum of sqrt(delta_d^2 + |offset change|^2) over the edges.
 
     Args:
         problem: gives delta_d and the weights of a metre and a radian.
         offsets: (m + 1, 3) displacement from the nominal base position on each layer [m].
         displaced: (m + 1, nd) displacement from the nominal joint values, if any [rad or m].
+
+    Returns:
+        L [m].
     """
     across = np.sum((np.diff(offsets, axis=0) * problem.position_weight) ** 2, axis=1)
     if displaced is not None:
@@ -25,9 +28,14 @@ def path_length(problem: Problem, offsets: Array, displaced: Array | None = None
 
 
 def nearness(problem: Problem, clearances: Array) -> Array:
-    """Delta / d_imin of Eq. 8 for clearances [m] of any shape, in units of length.
+    """Clearance term of Eq. 8: delta / d_imin, with d in `length_unit`s.
 
-    d counts in `length_unit`s and at most up to `clearance_cap`. Infinite where d <= 0.
+    Args:
+        problem: gives delta, the length unit and the cap.
+        clearances: array of any shape [m]; larger ones count as `clearance_cap`.
+
+    Returns:
+        Array of the same shape [length units], infinite where the clearance is not above zero.
     """
     d = np.asarray(clearances, dtype=np.float64)
     if problem.clearance_cap is not None:
@@ -39,11 +47,14 @@ def nearness(problem: Problem, clearances: Array) -> Array:
 
 
 def objective(problem: Problem, length: float, clearances: Array) -> float:
-    """F of Eq. 8 in units of length: L + delta sum over layers 1 .. m-1 of 1 / d_imin.
+    """Objective of Eq. 8: L + delta sum over layers 1 .. m-1 of 1 / d_imin.
 
     Args:
         problem: gives delta, the length unit and the cap.
         length: L [m].
         clearances: (m + 1,) clearances at the nodes [m].
+
+    Returns:
+        F [length units].
     """
     return length / problem.length_unit + float(np.sum(nearness(problem, clearances[1:-1])))

@@ -1,26 +1,55 @@
-"""`Problem`: everything that defines what is to be planned, checked once, immutable after."""
+"""`Problem`: robot, obstacles, start, goal and the settings of lattice and objective."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import number, truth
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import angle_between, to_angles
+from ffsr_plan.core.rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
+from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
-_SAME = 1e-12  # below this, two places or joint values count as one
+_SAME = 1e-12  # metres or radians by which two positions or joint values may differ and be equal
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class Configuration(Rule):
+    """A configuration of the robot in the field `robot`: (nq,), within the joint limits."""
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
+        """See `Rule.check`."""
+        if "robot" not in others:  # refused already
+            return value
+        robot: SpaceRobot = others["robot"]
+        return robot.check_configuration(what, value)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class ModeName(Rule):
+    """A mode, or its name."""
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> Mode:
+        """See `Rule.check`."""
+        return Mode.parse(what, value)
+
+    def json_schema(self) -> dict[str, Any]:
+        """See `Rule.json_schema`."""
+        return {"type": "string", "enum": [mode.value for mode in Mode]}
+
+
+@settings(eq=False)
 class Problem:
     """A planning problem.
 
@@ -31,93 +60,62 @@ class Problem:
         goal: (nq,) goal configuration. In the mode `free-flying` its attitude is not demanded: the
             attitude follows from the arms' motion. In the mode `free-floating` its position is not
             demanded either.
-        mode: `free-flying` (thrusters translate the base along the lattice, acting through the
-            centre of mass; the attitude reacts to the arms), `attitude-held` (wheels hold the
-            attitude interpolated from start to goal) or `free-floating` (nothing actuates the
-            base: attitude and position react, the centre of mass stays put).
-        lattice: layers and offsets.
-        delta: weight of nearness to obstacles in Eq. 8, in units of length squared, >= 0.
+        mode: what actuates the base. `free-flying`: thrusters translate it along the lattice,
+            acting through the centre of mass; the attitude reacts to the arms. `attitude-held`:
+            wheels hold the attitude interpolated from start to goal. `free-floating`: attitude and
+            position react; the centre of mass stays where it is.
+        lattice: layers and offsets; None for `Lattice()`.
+        delta: clearance weight of Eq. 8, in units of length squared, >= 0.
         length_unit: metres per unit of length in F. The paper gives no unit, and F is not
-            scale-free: it decides what delta weighs.
-        clearance_cap: clearance [m] beyond which more distance counts no further, or None.
+            scale-free: the unit decides how much delta weighs.
+        clearance_cap: clearance [m] beyond which more distance does not reduce F, or None.
         position_weight: metres of length per metre of translation (Eq. 4).
         rotation_weight: metres of length per radian of joint or held-base rotation (Eq. 4).
         tolerance: clearance [m] below which an edge may count as blocked.
-        reach_attitude: whether the arms are to bring the base to the goal's attitude; in the modes
+        reach_attitude: whether the arms have to bring the base to the goal's attitude; in the modes
             whose attitude reacts, on a lattice with posture axes.
+
+    Raises:
+        InvalidInput: naming the field, its value and what is allowed.
     """
 
-    robot: SpaceRobot
-    scene: Scene
-    start: Array
-    goal: Array
-    mode: Mode = Mode.FREE_FLYING
-    lattice: Lattice = field(default_factory=Lattice)
-    delta: float = 0.0
-    length_unit: float = 1.0
-    clearance_cap: float | None = None
-    position_weight: float = 1.0
-    rotation_weight: float = 1.0
-    tolerance: float = 1e-4
-    reach_attitude: bool = False
+    robot: Annotated[SpaceRobot, InstanceOf(SpaceRobot)]
+    scene: Annotated[Scene, InstanceOf(Scene)]
+    start: Annotated[Vector, Configuration()]
+    goal: Annotated[Vector, Configuration()]
+    mode: Annotated[Given[Mode, Mode | str], ModeName()] = setting(default=Mode.FREE_FLYING)
+    lattice: Annotated[Given[Lattice, Lattice | None], NoneMeans(Lattice)] = setting(
+        default_factory=Lattice
+    )
+    delta: Annotated[float, Number(at_least=0.0)] = 0.0
+    length_unit: Annotated[float, Number(above=0.0)] = 1.0
+    clearance_cap: Annotated[float, Number(above=0.0)] | None = None
+    position_weight: Annotated[float, Number(above=0.0)] = 1.0
+    rotation_weight: Annotated[float, Number(at_least=0.0)] = 1.0
+    tolerance: Annotated[float, Number(at_least=1e-7)] = 1e-4
+    reach_attitude: Annotated[bool, Truth()] = False
 
-    def __init__(  # the annotations differ from the fields': anything array-like may come in
-        self,
-        robot: SpaceRobot,
-        scene: Scene,
-        start: ArrayLike,
-        goal: ArrayLike,
-        mode: Mode | str = Mode.FREE_FLYING,
-        lattice: Lattice | None = None,
-        delta: float = 0.0,
-        length_unit: float = 1.0,
-        clearance_cap: float | None = None,
-        position_weight: float = 1.0,
-        rotation_weight: float = 1.0,
-        tolerance: float = 1e-4,
-        reach_attitude: bool = False,
-    ) -> None:
-        """Check and freeze the problem.
+    def __post_init__(self) -> None:
+        for axis in self.lattice.postures:
+            axis.displacement(self.robot, self.robot.joint_values(self.start))
+        self._check_attitude()
+        self._check_displacement()
 
-        Raises:
-            InvalidInput: naming the field, its value and what is allowed.
-        """
-        kinds: dict[str, tuple[object, type]] = {
-            "robot": (robot, SpaceRobot),
-            "scene": (scene, Scene),
-            "lattice": (Lattice() if lattice is None else lattice, Lattice),
-        }
-        for name, (given, kind) in kinds.items():
-            if not isinstance(given, kind):
-                raise InvalidInput(name, given, f"a {kind.__name__}")
-        values = {
-            "robot": robot,
-            "scene": scene,
-            "start": robot.check_configuration("start", start),
-            "goal": robot.check_configuration("goal", goal),
-            "mode": Mode.parse("mode", mode),
-            "lattice": lattice or Lattice(),
-            "delta": number("delta", delta, at_least=0.0),
-            "length_unit": number("length_unit", length_unit, above=0.0),
-            "clearance_cap": None
-            if clearance_cap is None
-            else number("clearance_cap", clearance_cap, above=0.0),
-            "position_weight": number("position_weight", position_weight, above=0.0),
-            "rotation_weight": number("rotation_weight", rotation_weight, at_least=0.0),
-            "tolerance": number("tolerance", tolerance, at_least=1e-7),
-            "reach_attitude": truth("reach_attitude", reach_attitude),
-        }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
-        self._check_that_something_is_to_be_done()
+    def __repr__(self) -> str:
+        fields = ", ".join(f"{name}={value}" for name, value in self._summary())
+        return f"Problem({fields})"
+
+    def _repr_html_(self) -> str:
+        return html_table("Problem", dict(self._summary()))
 
     def reaching(
         self, frame: str, position: ArrayLike, attitude: ArrayLike | None = None, *, seed: int = 0
     ) -> Problem:
         """The same problem with a goal at which a frame has the wanted pose.
 
-        The base goes where the goal has it now, as far as the mode prescribes it; on a lattice
-        with posture axes it has to reach the attitude that follows. See `inverse_kinematics`.
+        As far as the mode prescribes the base pose, it is that of the present goal. On a lattice
+        with posture axes the base has to arrive at the attitude that belongs to the pose. See
+        `inverse_kinematics`.
 
         Args:
             frame: name of a link, joint or other frame of the model.
@@ -127,36 +125,42 @@ class Problem:
 
         Raises:
             InvalidInput: an argument that is not allowed.
-            PoseOutOfReach: with what the best joint values found miss the pose by.
-            GoalInCollision: all joint values found touch an obstacle or the robot itself.
+            PoseOutOfReach: no joint values were found; with the error of the best ones.
+            GoalInCollision: all joint values found are in collision.
+
+        Returns:
+            The new problem; this one does not change.
         """
         held = self.mode.has_wheels
         goal = inverse_kinematics(
-            self.robot, frame, position, attitude,
+            self.robot,
+            self.scene,
+            frame,
+            position,
+            attitude,
             start=self.start,
             mode=self.mode,
             base_position=None if self.mode.floats else self.goal[:3],
             base_attitude=to_angles(self.goal[3:7]) if held else None,
-            scene=self.scene,
             seed=seed,
-        )  # fmt: skip
+        )
         return replace(self, goal=goal, reach_attitude=bool(self.lattice.postures) and not held)
 
     @property
-    def travel(self) -> Array:
+    def base_displacement(self) -> Array:
         """(3,) from the base's start to its goal, world axes [m]; zero where it floats."""
         if self.mode.floats:
             return frozen(np.zeros(3))
         return frozen(self.goal[:3] - self.start[:3])
 
     @property
-    def joint_travel(self) -> Array:
-        """(nd,) change of the joint values [rad or m], continuous joints the shorter way round."""
+    def joint_displacement(self) -> Array:
+        """(nd,) change of the joint values [rad or m]; continuous joints take the shorter way."""
         return frozen(self.robot.joint_change(self.start, self.goal))
 
     @property
-    def turn(self) -> float:
-        """Angle from the start's to the goal's attitude [rad], where the mode prescribes both."""
+    def held_rotation(self) -> float:
+        """Angle from the start's to the goal's attitude [rad] if wheels hold it, otherwise 0."""
         if self.mode.attitude_reacts:
             return 0.0
         return float(angle_between(self.start[3:7], self.goal[3:7]))
@@ -165,28 +169,46 @@ class Problem:
     def delta_d(self) -> float:
         """Length of one layer's nominal step, Eq. 4 [m]: weighted norm of what is prescribed."""
         slide = self.robot.prismatic
-        joints = self.joint_travel
-        metres = np.concatenate([self.travel, joints[slide]]) * self.position_weight
-        radians = np.append(joints[~slide], self.turn) * self.rotation_weight
+        joints = self.joint_displacement
+        metres = np.concatenate([self.base_displacement, joints[slide]]) * self.position_weight
+        radians = np.append(joints[~slide], self.held_rotation) * self.rotation_weight
         total = float(np.sqrt(np.sum(metres**2) + np.sum(radians**2)))
         return total / self.lattice.divisions
 
-    def _check_that_something_is_to_be_done(self) -> None:
-        moves = float(np.linalg.norm(self.travel)) > _SAME
-        turns = float(np.max(np.abs(self.joint_travel), initial=0.0)) > _SAME or self.turn > _SAME
+    def _check_attitude(self) -> None:
+        """Raise `InvalidInput` if `reach_attitude` is set and cannot be."""
         if self.reach_attitude and self.mode.has_wheels:
-            raise InvalidInput("reach_attitude", True, "False where wheels turn the base")
+            raise InvalidInput("reach_attitude", True, "False where wheels hold the attitude")
         if self.reach_attitude and not self.lattice.postures:
             raise InvalidInput("reach_attitude", True, "a lattice with posture axes")
-        if not (moves or turns or self.reach_attitude):
+
+    def _check_displacement(self) -> None:
+        """Raise `InvalidInput` if nothing has to move, or an axis has no direction of travel."""
+        translates = float(np.linalg.norm(self.base_displacement)) > _SAME
+        joints_move = float(np.max(np.abs(self.joint_displacement), initial=0.0)) > _SAME
+        rotates = self.held_rotation > _SAME
+        if not (translates or joints_move or rotates or self.reach_attitude):
             raise InvalidInput(
                 "goal", self.goal.tolist(), "a configuration that differs from the start"
             )
-        floats = self.mode.floats
-        if not moves and self.lattice.axes:
+        if not translates and self.lattice.axes:
             raise InvalidInput(
                 "lattice",
                 f"{' and '.join(self.lattice.axes)} axis, "
-                + ("no thrusters" if floats else "start and goal at one position"),
+                + ("no thrusters" if self.mode.floats else "start and goal at one position"),
                 "no lateral or normal axis where there is no direction of travel",
             )
+
+    def _summary(self) -> list[tuple[str, str]]:
+        """Names and values for representations."""
+        lattice = self.lattice
+        axes = [*lattice.axes, *(f"posture {k}" for k, _ in enumerate(lattice.postures))]
+        across = f", axes {', '.join(axes)}" if axes else ""
+        return [
+            ("robot", self.robot.name),
+            ("mode", str(self.mode)),
+            ("obstacles", counted(len(self.scene), "sphere")),
+            ("lattice", f"{lattice.divisions} divisions{across}"),
+            ("delta", f"{self.delta:g}"),
+            ("length_unit", f"{self.length_unit:g} m"),
+        ]

@@ -160,7 +160,7 @@ class Prover:
             )
             for nearest in pairs:
                 if nearest.distance <= 0.0:
-                    raise error(nearest.link, nearest.other, -nearest.distance)
+                    raise error(nearest.link, nearest.obstacle, -nearest.distance)
 
     def check_self_collision(self) -> None:
         """Prove that no links touch each other on any edge, whatever the offsets.
@@ -171,7 +171,7 @@ class Prover:
         for layer, verdict in enumerate(self.self_verdicts()):
             if not verdict.free:
                 nearest = self.nearest_links(layer, verdict.time)
-                raise NoPath(layer + 1, (nearest.link, str(nearest.other)), self._motion.edges)
+                raise NoPath(layer + 1, (nearest.link, str(nearest.obstacle)), self._motion.edges)
 
     def self_verdicts(self) -> list[Verdict]:
         """(m,) for each edge, whether links that must not touch are proven apart."""

@@ -98,7 +98,7 @@ def certify_edge(
         free=verdict.free,
         least_clearance=verdict.least_clearance,
         link=nearest.link,
-        obstacle=nearest.other if nearest.link else None,
+        obstacle=nearest.obstacle if nearest.link else None,
         time=verdict.time,
         proven_clearance=proven,
         queries=prover.queries,

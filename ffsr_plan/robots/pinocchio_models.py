@@ -1,4 +1,4 @@
-"""What is left for Pinocchio to read of a URDF: links and joints, and what its pictures show."""
+"""Pinocchio's kinematic and visual models of a URDF."""
 
 from __future__ import annotations
 
@@ -14,12 +14,16 @@ from ffsr_plan.robots.urdf_validation import Counts
 
 
 def build_model(text: str, where: str) -> pin.Model:
-    """The model of a checked URDF, its root on a free-flyer joint.
+    """Build the kinematic model of a URDF, its root link on a free-flyer joint.
 
-    Made from the text without its shapes: not every one is known to Pinocchio.
+    Shapes are removed from the text first, because Pinocchio does not know all of them.
+
+    Args:
+        text: the URDF, checked.
+        where: file or robot name that starts every message.
 
     Raises:
-        InvalidInput: no tree of links, with Pinocchio's own words.
+        InvalidInput: a URDF that Pinocchio refuses, with Pinocchio's message.
     """
     root = ElementTree.fromstring(text)
     for link in root.findall("link"):
@@ -35,9 +39,17 @@ def build_model(text: str, where: str) -> pin.Model:
 
 
 def visual_model(model: pin.Model, text: str, folders: Sequence[str]) -> pin.GeometryModel:
-    """The visual shapes that Pinocchio can read; pictures do without the others.
+    """Build the model of the visual shapes that Pinocchio can read.
 
-    Capsules and missing meshes are left out, because they would take other shapes with them.
+    Capsules and missing meshes are left out, because Pinocchio would drop other shapes with them.
+
+    Args:
+        model: the kinematic model of the same URDF.
+        text: the URDF, checked.
+        folders: folders in which mesh addresses are looked up.
+
+    Returns:
+        The visual shapes; none if Pinocchio refuses them.
     """
     root = ElementTree.fromstring(text)
     for link in root.findall("link"):
@@ -45,20 +57,30 @@ def visual_model(model: pin.Model, text: str, folders: Sequence[str]) -> pin.Geo
             link.remove(collision)
         for visual in link.findall("visual"):
             mesh = visual.find("geometry/mesh")
-            lost = mesh is not None and find(mesh.get("filename", ""), folders) is None
-            if lost or visual.find("geometry/capsule") is not None:
+            missing = mesh is not None and find(mesh.get("filename", ""), folders) is None
+            if missing or visual.find("geometry/capsule") is not None:
                 link.remove(visual)
+    stripped, kind = ElementTree.tostring(root, encoding="unicode"), pin.GeometryType.VISUAL
     try:
-        return pin.buildGeomFromUrdfString(
-            model, ElementTree.tostring(root, encoding="unicode"), pin.GeometryType.VISUAL,
-            package_dirs=list(folders),
-        )  # fmt: skip
+        return pin.buildGeomFromUrdfString(model, stripped, kind, package_dirs=list(folders))
     except ValueError:
         return pin.GeometryModel()
 
 
 def check_loaded(name: str, model: pin.Model, collision: pin.GeometryModel, counts: Counts) -> None:
-    """Pinocchio drops some links and shapes without an error; count what arrived."""
+    """Check that Pinocchio has loaded all links and shapes, and that moving bodies have mass.
+
+    Pinocchio drops some links and shapes without an error.
+
+    Args:
+        name: file or robot name that starts every message.
+        model: the kinematic model.
+        collision: the collision shapes.
+        counts: numbers of links and shapes in the URDF.
+
+    Raises:
+        InvalidInput: a link or shape is missing, or a moving body has no mass.
+    """
     links = sum(frame.type == pin.FrameType.BODY for frame in model.frames)
     if (links, collision.ngeoms) != counts:
         raise InvalidInput(
@@ -73,5 +95,5 @@ def check_loaded(name: str, model: pin.Model, collision: pin.GeometryModel, coun
         )
     for frame in model.frames:  # a joint's inertia is that of all links fixed to one another
         if frame.type == pin.FrameType.BODY and model.inertias[frame.parentJoint].mass <= 0.0:
-            allowed = "a mass for what moves, the link's own or of a link fixed to it"
+            allowed = "a mass of the moving link or of a link fixed to it"
             raise InvalidInput(f"{name}, link '{frame.name}'", "0 kg", allowed)

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
@@ -16,7 +17,9 @@ from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, one_of, unit_quaternion
 from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
+from ffsr_plan.core.text_files import read_text, write_text
 from ffsr_plan.robots.adjacent_links import may_touch
 from ffsr_plan.robots.collision_shapes import (
     CONTAINERS,
@@ -32,74 +35,102 @@ from ffsr_plan.robots.urdf_validation import check_urdf, parse
 
 
 class Components(NamedTuple):
-    """A configuration taken apart."""
+    """Parts of one configuration, or of N.
+
+    Attributes:
+        position: (3,) or (N, 3) base origin in the world [m].
+        attitude: (3,) or (N, 3) ZYX angles alpha, beta, gamma of Eq. 2 [rad].
+        joints: joint values by name [rad, or m where prismatic]: a float each, or (N,).
+    """
 
     position: Array
-    """(3,) [m], base origin in the world."""
     attitude: Array
-    """(3,) [rad], ZYX angles alpha, beta, gamma of Eq. 2."""
-    joints: dict[str, float]
-    """Joint values by name [rad, or m where prismatic]."""
+    joints: dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
 class SpaceRobot:
-    """A free-flying robot. Made by `load_robot`; treat everything in it as read-only.
+    """A free-flying robot. Made by `load_robot` or `compose`; everything in it is read-only.
 
     A configuration `q` is Pinocchio's vector (nq,): base position (3) [m] and quaternion
     (x, y, z, w) of the base in the world, then the joints. `joint values` (nd,) are plain numbers,
-    one a joint in Pinocchio's order [rad or m], for continuous joints as well, which Pinocchio
-    keeps as cosine and sine.
+    one per joint in Pinocchio's order [rad, or m where prismatic]. This holds for continuous joints
+    as well, which Pinocchio stores as cosine and sine.
+
+    Attributes:
+        name: name of the robot.
+        urdf: the URDF text that the robot was made from.
+        model: Pinocchio model, the root link on a free-flyer joint.
+        collision_model: collision shapes and the pairs checked for self-collision: all pairs except
+            those of adjacent links and those that the SRDF exempts.
+        visual_model: visual shapes that Pinocchio can read.
+        package_dirs: folders in which mesh addresses are looked up.
+        replacements: collision shapes that are replaced by another solid.
+        containers: which kinds of solids replace meshes and cylinders.
+        meshes: (n, 3) corners of the convex hulls of the collision meshes by their address in the
+            URDF, before its scale [m]. With these the robot can be made without the mesh files.
+        srdf: the SRDF text; empty if there is none.
+        disabled_pairs: pairs of links that the SRDF allows to touch, sorted.
+        joint_names: (nd) names of the joints.
+        lower: (nd,) lower joint limits [rad or m], -inf for continuous joints.
+        upper: (nd,) upper joint limits [rad or m], inf for continuous joints.
+        prismatic: (nd,) booleans, true where the joint value is in metres.
+        postures: joint values [rad or m] by joint, by name of the posture, from the group states of
+            the SRDF. A posture may list some of the joints only.
     """
 
     name: str
     urdf: str
-    """The URDF text that the robot was made from."""
     model: pin.Model
     collision_model: pin.GeometryModel
-    """Collision shapes, with the self-collision pairs: all but those of adjacent links and those
-    that the SRDF exempts."""
     visual_model: pin.GeometryModel
     package_dirs: tuple[str, ...] = ()
     replacements: tuple[Replacement, ...] = ()
-    """Collision shapes that another solid stands for."""
     containers: Containers = field(default_factory=Containers)
-    """What meshes and cylinders were put in."""
     meshes: Mapping[str, Array] = field(default_factory=dict)
-    """(n, 3) corners of the convex hulls of the collision meshes, by their address in the URDF,
-    before its scale [m]: with these the robot can be made again without the files."""
     srdf: str = ""
-    """The SRDF text, empty where there is none."""
     disabled_pairs: tuple[tuple[str, str], ...] = ()
-    """Links that the SRDF allows to touch, sorted."""
     joint_names: tuple[str, ...] = field(init=False)
     lower: Array = field(init=False)
-    """(nd,) lower joint limits, -inf for continuous joints."""
     upper: Array = field(init=False)
     prismatic: NDArray[np.bool_] = field(init=False)
-    """(nd,) booleans: which joint values are metres."""
-    _slots: tuple[tuple[int, int], ...] = field(init=False, repr=False)
+    postures: Mapping[str, Mapping[str, float]] = field(init=False)
+    _slots: tuple[tuple[int, int], ...] = field(init=False, repr=False)  # index and length in q
 
     def __post_init__(self) -> None:
         joints = [self.model.joints[j] for j in range(2, self.model.njoints)]
         slots = tuple((j.idx_q, j.nq) for j in joints)
-        bounded = [nq == 1 for _, nq in slots]
-        lower = [
-            self.model.lowerPositionLimit[i] if b else -np.inf
-            for (i, _), b in zip(slots, bounded, strict=True)
-        ]
-        upper = [
-            self.model.upperPositionLimit[i] if b else np.inf
-            for (i, _), b in zip(slots, bounded, strict=True)
-        ]
-        fill = object.__setattr__
-        fill(self, "joint_names", tuple(self.model.names[j] for j in range(2, self.model.njoints)))
-        fill(self, "lower", frozen(np.array(lower, dtype=np.float64)))
-        fill(self, "upper", frozen(np.array(upper, dtype=np.float64)))
-        sliding = np.array([j.shortname().startswith("JointModelP") for j in joints], dtype=bool)
-        sliding.setflags(write=False)
-        fill(self, "prismatic", sliding)
-        fill(self, "_slots", slots)
+        lowest, highest = self.model.lowerPositionLimit, self.model.upperPositionLimit
+        lower = [float(lowest[i]) if nq == 1 else -np.inf for i, nq in slots]
+        upper = [float(highest[i]) if nq == 1 else np.inf for i, nq in slots]
+        names = tuple(self.model.names[j] for j in range(2, self.model.njoints))
+        prismatic = [j.shortname().startswith("JointModelP") for j in joints]
+        limits = dict(zip(names, zip(lower, upper, strict=True), strict=True))
+        derived = {
+            "joint_names": names,
+            "lower": frozen(np.array(lower, dtype=np.float64)),
+            "upper": frozen(np.array(upper, dtype=np.float64)),
+            "prismatic": frozen(np.array(prismatic, dtype=np.bool_)),
+            "postures": named_postures(self.srdf, f"{self.name}, SRDF", limits),
+            "_slots": slots,
+        }
+        for attribute, value in derived.items():
+            object.__setattr__(self, attribute, value)
+
+    def __repr__(self) -> str:
+        return (
+            f"SpaceRobot('{self.name}': {counted(self.nd, 'joint')}, {self.mass:.4g} kg, "
+            f"{counted(len(self.link_names), 'link')})"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = {
+            "joints": ", ".join(self.joint_names) or "none",
+            "mass": f"{self.mass:.4g} kg",
+            "links": str(len(self.link_names)),
+            "postures": ", ".join(self.postures) or "none",
+        }
+        return html_table(f"SpaceRobot {self.name}", rows)
 
     @property
     def nd(self) -> int:
@@ -108,7 +139,7 @@ class SpaceRobot:
 
     @cached_property
     def tree(self) -> Tree:
-        """The kinematic tree, for many configurations at once."""
+        """The kinematic tree, which computes poses of many configurations at once."""
         return Tree(self.model)
 
     @cached_property
@@ -116,39 +147,51 @@ class SpaceRobot:
         """The collision shapes as arrays."""
         return primitives(self.collision_model)
 
-    @cached_property
-    def postures(self) -> Mapping[str, Mapping[str, float]]:
-        """Named postures, from the SRDF's group states: joint values [rad or m] by joint.
+    @property
+    def mass(self) -> float:
+        """Mass of all bodies [kg]."""
+        return float(sum(inertia.mass for inertia in self.model.inertias))
 
-        A posture speaks of the joints that it lists; the others stay where they are.
-        """
-        bounds = zip(self.lower.tolist(), self.upper.tolist(), strict=True)
-        limits = dict(zip(self.joint_names, bounds, strict=True))
-        return named_postures(self.srdf, f"{self.name}, SRDF", limits)
+    @property
+    def link_names(self) -> tuple[str, ...]:
+        """Names of all links of the URDF."""
+        frames = self.model.frames
+        return tuple(frame.name for frame in frames if frame.type == pin.FrameType.BODY)
 
     def neutral(self) -> Array:
-        """(nq,) base at the world's origin, joint values zero."""
+        """(nq,) configuration with the base at the world's origin and all joint values zero."""
         return self.assemble(np.zeros(3), IDENTITY, np.zeros(self.nd))
 
     def configuration(
         self,
         position: ArrayLike = (0.0, 0.0, 0.0),
         attitude: ArrayLike = (0.0, 0.0, 0.0),
-        joints: Mapping[str, float] | None = None,
+        joints: str | Mapping[str, float] | None = None,
     ) -> Array:
-        """(nq,) configuration from the paper's coordinates.
+        """Configuration from base position, base attitude and joint values.
 
         Args:
             position: (3,) base origin in the world [m].
-            attitude: (3,) ZYX angles alpha, beta, gamma [rad] of Eq. 2.
-            joints: values by joint name [rad or m]; the others are at zero.
+            attitude: (3,) ZYX angles alpha, beta, gamma of Eq. 2 [rad].
+            joints: joint values by name [rad or m], or the name of a posture of the SRDF; joints
+                that are not listed are at zero. To change a posture, merge mappings:
+                `joints={**robot.postures["stowed"], "elbow": 0.2}`.
+
+        Returns:
+            (nq,) configuration.
 
         Raises:
-            InvalidInput: unknown joint, not finite, wrong shape, or outside the joint's limits.
+            InvalidInput: unknown joint or posture, not finite, wrong shape, or outside the joint's
+                limits.
         """
-        values = np.zeros(self.nd)
+        if isinstance(joints, str):
+            if joints not in self.postures:
+                raise unknown_name("joints", joints, self.postures)
+            joints = self.postures[joints]
         if joints is not None and not isinstance(joints, Mapping):
-            raise InvalidInput("joints", joints, "a mapping from joint names to values")
+            allowed = "a mapping from joint names to values, or the name of a posture"
+            raise InvalidInput("joints", joints, allowed)
+        values = np.zeros(self.nd)
         for name, value in (joints or {}).items():
             if name not in self.joint_names:
                 raise unknown_name("joints", name, self.joint_names)
@@ -158,26 +201,60 @@ class SpaceRobot:
         return self.assemble(finite_array("position", position, (3,), FARTHEST), quat, values)
 
     def components(self, q: ArrayLike) -> Components:
-        """The inverse of `configuration`: position, ZYX angles and joint values by name."""
-        q = self.check_configuration("q", q)
-        values = self.joint_values(q)
-        named = {name: float(v) for name, v in zip(self.joint_names, values, strict=True)}
-        return Components(q[:3], frozen(to_angles(q[3:7])), named)
+        """Base position, base attitude and joint values of configurations.
+
+        This is the inverse of `configuration`.
+
+        Args:
+            q: (nq,) one configuration, or (N, nq).
+
+        Returns:
+            The components of one configuration, or arrays of N rows.
+
+        Raises:
+            InvalidInput: not a configuration of this robot; of N, the first that is not.
+        """
+        if np.ndim(q) == 2:
+            rows = np.asarray(q)
+            checked = np.array(
+                [self.check_configuration(f"q[{k}]", row) for k, row in enumerate(rows)]
+            ).reshape(-1, self.model.nq)
+        else:
+            checked = self.check_configuration("q", q)
+        values = self.joint_values(checked)
+        joints = {
+            name: float(values[k]) if values.ndim == 1 else frozen(values[:, k].copy())
+            for k, name in enumerate(self.joint_names)
+        }
+        return Components(checked[..., :3], frozen(to_angles(checked[..., 3:7])), joints)
 
     def paper_vector(self, q: ArrayLike) -> Array:
-        """(nd + 6,) the paper's q: x, y, z, alpha, beta, gamma, theta_1 .. theta_nd."""
+        """The paper's q, (nd + 6,): x, y, z [m], alpha, beta, gamma [rad], theta_1 .. theta_nd.
+
+        Args:
+            q: (nq,) configuration.
+        """
         parts = self.components(q)
         return np.concatenate([parts.position, parts.attitude, list(parts.joints.values())])
 
     def from_paper_vector(self, vector: ArrayLike) -> Array:
-        """(nq,) configuration of the paper's (nd + 6,) vector."""
+        """(nq,) configuration from the paper's vector (nd + 6,); see `paper_vector`."""
         v = finite_array("vector", vector, (self.nd + 6,))
         return self.configuration(
             v[:3], v[3:6], dict(zip(self.joint_names, v[6:].tolist(), strict=True))
         )
 
     def assemble(self, position: Array, quat_xyzw: Array, joint_values: Array) -> Array:
-        """Configurations (..., nq) from arrays (..., 3), (..., 4) and (..., nd); unchecked."""
+        """Configurations from arrays, without any check.
+
+        Args:
+            position: (..., 3) base origin in the world [m].
+            quat_xyzw: (..., 4) base attitude.
+            joint_values: (..., nd) [rad or m].
+
+        Returns:
+            (..., nq) configurations.
+        """
         lead = np.broadcast_shapes(
             position.shape[:-1], quat_xyzw.shape[:-1], joint_values.shape[:-1]
         )
@@ -200,20 +277,34 @@ class SpaceRobot:
         return values
 
     def joint_change(self, begin: Array, end: Array) -> Array:
-        """(nd,) from one configuration (nq,) to another, continuous joints the shorter way round.
+        """Change of the joint values from one configuration to another.
 
-        Half a turn goes in the positive sense.
+        A continuous joint takes the shorter direction; a rotation by pi is positive.
+
+        Args:
+            begin: (nq,) first configuration.
+            end: (nq,) second configuration.
+
+        Returns:
+            (nd,) change of the joint values [rad or m].
         """
         change = self.joint_values(end) - self.joint_values(begin)
         wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
         return np.where(np.isinf(self.upper), wrapped, change)
 
     def check_configuration(self, what: str, q: ArrayLike) -> Array:
-        """A clean, read-only copy of `q` (nq,).
+        """Check a configuration.
+
+        Args:
+            what: name of the argument in error messages.
+            q: (nq,) configuration.
+
+        Returns:
+            (nq,) read-only copy, its quaternion normalised.
 
         Raises:
-            InvalidInput: wrong length, not finite, quaternion (or a continuous joint's cosine and
-                sine) not of norm one, joint outside its limits.
+            InvalidInput: wrong length, not finite, a quaternion (or cosine and sine of a continuous
+                joint) not of norm one, or a joint outside its limits.
         """
         checked = np.array(finite_array(what, q, (self.model.nq,)))
         finite_array(f"{what} (base position)", checked[:3], (3,), FARTHEST)
@@ -238,9 +329,12 @@ class SpaceRobot:
                 )
 
     def save(self, path: str | Path) -> None:
-        """Write `urdf` to a `.urdf` file and the SRDF, if there is one, to a `.srdf` beside it.
+        """Write the URDF, and the SRDF if there is one to a `.srdf` file beside it.
 
         Files of the same names are replaced. Meshes that the URDF names are not copied.
+
+        Args:
+            path: path that ends in `.urdf`.
 
         Raises:
             InvalidInput: not a `.urdf` path, or one that cannot be written.
@@ -248,12 +342,9 @@ class SpaceRobot:
         target = Path(path)
         if target.suffix != ".urdf":
             raise InvalidInput("path", str(path), "a path that ends in .urdf")
-        try:
-            target.write_text(self.urdf, encoding="utf-8")
-            if self.srdf:
-                target.with_suffix(".srdf").write_text(self.srdf, encoding="utf-8")
-        except OSError as error:
-            raise InvalidInput("path", str(path), f"a file to be written ({error})") from None
+        write_text("path", target, self.urdf)
+        if self.srdf:
+            write_text("path", target.with_suffix(".srdf"), self.srdf)
 
     def link_of(self, geometry: pin.GeometryObject) -> str:
         """Name of the URDF link that a collision or visual shape belongs to."""
@@ -276,7 +367,7 @@ def load_robot(
     """Load a robot whose root link floats freely.
 
     Boxes, spheres and capsules are taken as they are. A cylinder or a mesh is replaced by a solid
-    around it, and `SpaceRobot.replacements` says so.
+    that contains it, which `SpaceRobot.replacements` lists.
 
     Args:
         source: name of a bundled robot (see `robot_names`), or path to a `.urdf` file.
@@ -284,14 +375,17 @@ def load_robot(
             before the folder of the `.urdf` file.
         srdf: path to an SRDF whose `<disable_collisions>` exempt pairs of links from the check for
             self-collision (adjacent links are exempt in any case) and whose `<group_state>`s are
-            the robot's named postures. A bundled robot brings its own.
-        meshes: what stands for a mesh: `hull`, its convex hull, or `capsule`, one that contains it.
-        cylinders: what stands for a cylinder: `hull`, a prism of 24 sides around it (at most
-            0.9 % of the radius larger), or `capsule`, one that contains it (the one with the least
-            excess; 41 % of the radius, more for short ones).
+            the robot's named postures. A bundled robot comes with its own.
+        meshes: what replaces a mesh: `hull`, its convex hull, or `capsule`, a capsule around it.
+        cylinders: what replaces a cylinder: `hull`, a prism of 24 sides around it (larger by at
+            most 0.9 % of the radius), or `capsule`, the capsule around it with the least excess
+            (41 % of the radius, more for short cylinders).
+
+    Returns:
+        The robot.
 
     Raises:
-        InvalidInput: no such robot or file, or a URDF, SRDF or mesh that cannot be used, with the
+        InvalidInput: no such robot or file, or a URDF, SRDF or mesh that cannot be used; names the
             link or joint.
     """
     if not isinstance(source, (str, Path)):
@@ -308,14 +402,12 @@ def load_robot(
     if srdf is not None and not isinstance(srdf, (str, Path)):
         raise InvalidInput("srdf", srdf, "a path")
     folders = [*(str(Path(p)) for p in package_dirs), str(path.parent)]
-    pairs = "" if srdf is None else _read("srdf", Path(srdf))
-    if srdf is not None and not pairs.strip():
+    srdf_text = "" if srdf is None else read_text("srdf", Path(srdf))
+    if srdf is not None and not srdf_text.strip():
         raise InvalidInput("srdf", str(srdf), "a file that is not empty")
-    return robot_from_urdf(
-        _read("robot", path), path.stem, folders,
-        srdf=pairs,
-        containers=Containers(meshes, cylinders),
-    )  # fmt: skip
+    containers = Containers(meshes, cylinders)
+    text = read_text("robot", path)
+    return robot_from_urdf(text, path.stem, folders, srdf=srdf_text, containers=containers)
 
 
 def robot_from_urdf(
@@ -329,7 +421,19 @@ def robot_from_urdf(
 ) -> SpaceRobot:
     """Make a robot from URDF and SRDF texts; see `load_robot`.
 
-    `meshes` holds hull corners by address (see `SpaceRobot.meshes`); these need no file.
+    Args:
+        text: the URDF.
+        name: name of the robot, which also starts every error message.
+        package_dirs: folders in which mesh addresses are looked up.
+        srdf: the SRDF; empty for none.
+        containers: which kinds of solids replace meshes and cylinders; hulls by default.
+        meshes: (n, 3) hull corners by address (see `SpaceRobot.meshes`), which need no file.
+
+    Returns:
+        The robot.
+
+    Raises:
+        InvalidInput: a URDF, SRDF or mesh that cannot be used.
     """
     counts = check_urdf(text, name)
     containers = Containers() if containers is None else containers
@@ -337,30 +441,39 @@ def robot_from_urdf(
         one_of(what, kind, CONTAINERS)
     folders = list(package_dirs)
     corners = dict(meshes or {})
+    root = parse(text, name)
     model = build_model(text, name)
-    collision, replacements = collision_geometry(
-        model, parse(text, name), name, folders, containers, corners
-    )
+    collision, replacements = collision_geometry(model, root, name, folders, containers, corners)
     check_loaded(name, model, collision, counts)
     links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
     disabled = disabled_pairs(srdf, f"{name}, SRDF", links)
-    tied = may_touch(parse(text, name))
-    shapes = [(str(model.frames[g.parentFrame].name)) for g in collision.geometryObjects]
-    for a, first in enumerate(shapes):
-        for b, second in enumerate(shapes[:a]):
-            ends = tuple(sorted((first, second)))
-            if ends not in disabled and not tied(first, second):
+    _add_self_collision_pairs(model, collision, root, disabled)
+    return SpaceRobot(
+        name,
+        text,
+        model,
+        collision,
+        visual_model(model, text, folders),
+        package_dirs=tuple(folders),
+        replacements=replacements,
+        containers=containers,
+        meshes=corners,
+        srdf=srdf,
+        disabled_pairs=disabled,
+    )
+
+
+def _add_self_collision_pairs(
+    model: pin.Model,
+    collision: pin.GeometryModel,
+    root: ElementTree.Element,
+    disabled: Sequence[tuple[str, str]],
+) -> None:
+    """Add all pairs of shapes except those of adjacent links and those that the SRDF exempts."""
+    adjacent = may_touch(root)
+    links = [str(model.frames[shape.parentFrame].name) for shape in collision.geometryObjects]
+    for a, first in enumerate(links):
+        for b, second in enumerate(links[:a]):
+            pair = (min(first, second), max(first, second))
+            if pair not in disabled and not adjacent(first, second):
                 collision.addCollisionPair(pin.CollisionPair(b, a))
-    robot = SpaceRobot(
-        name, text, model, collision, visual_model(model, text, folders), tuple(folders),
-        replacements, containers, corners, srdf, disabled,
-    )  # fmt: skip
-    robot.postures  # noqa: B018 - so that a wrong one is found now
-    return robot
-
-
-def _read(what: str, path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInput(what, str(path), f"a readable UTF-8 file ({error})") from None

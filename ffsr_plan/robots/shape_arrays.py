@@ -1,8 +1,8 @@
-"""The robot's collision shapes as arrays, in the terms that the compiled search understands.
+"""Collision shapes as arrays for the compiled search.
 
-A ball is a segment of length zero with a radius, a capsule a segment with a radius, a box is a box;
-for these the distance to a sphere is a short closed form. A convex hull is represented by the box
-around it: what the search finds for it is a lower bound, and Coal decides.
+A sphere is a segment of length zero with a radius, a capsule a segment with a radius, a box is a
+box: for these the distance to a sphere is a short closed form. A convex hull is represented by the
+box around it: the search then returns a lower bound, and Coal measures the distance.
 """
 
 from __future__ import annotations
@@ -20,24 +20,31 @@ ROUND, BOX = 0, 1
 
 
 class Primitives(NamedTuple):
-    """Collision shapes (g), in the order of the geometry model."""
+    """The g collision shapes of a robot, in the order of its geometry model.
+
+    Attributes:
+        kinds: (g,) ROUND (a segment along z with a radius) or BOX.
+        sizes: (g, 3) radius, half length and zero of round shapes; half sides of boxes [m].
+        exact: (g,) whether kind and size describe the shape itself, not only a box around it.
+        links: (g,) the link of the shape, numbered as in `kinematics`.
+        rotations: (g, 3, 3) shape axes to link axes.
+        positions: (g, 3) origin of the shape in the link's frame [m].
+    """
 
     kinds: NDArray[np.int64]
-    """(g,) ROUND (a segment along z with a radius) or BOX."""
     sizes: Array
-    """(g, 3) radius, half length and zero, or half sides [m]."""
     exact: Flags
-    """(g,) whether kind and size describe the shape itself, not only something around it."""
     links: IntArray
-    """(g,) the link that carries the shape, numbered as in `kinematics`."""
     rotations: Array
-    """(g, 3, 3) shape axes to link axes."""
     positions: Array
-    """(g, 3) of the shape in the link's frame [m]."""
 
 
 def primitives(geometry: pin.GeometryModel) -> Primitives:
-    """The collision shapes of a geometry model."""
+    """Collision shapes of a geometry model as arrays.
+
+    Args:
+        geometry: spheres, capsules, boxes and convex hulls.
+    """
     shapes = list(geometry.geometryObjects)
     described = [_describe(shape.geometry) for shape in shapes]
     return Primitives(

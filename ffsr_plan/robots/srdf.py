@@ -1,4 +1,4 @@
-"""What an SRDF says: pairs of links exempt from self-collision, and named postures."""
+"""SRDF: pairs of links exempt from self-collision, and named postures."""
 
 from __future__ import annotations
 
@@ -9,12 +9,15 @@ from ffsr_plan.robots.urdf_validation import numbers, parse
 
 
 def disabled_pairs(text: str, where: str, links: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """The pairs of `<disable_collisions>`, each sorted, in sorted order; the rest is not read.
+    """Pairs of links of the `<disable_collisions>` elements.
 
     Args:
         text: the SRDF; empty for none.
         where: file or robot name that starts every message.
         links: names of the robot's links.
+
+    Returns:
+        The pairs, each sorted, in sorted order.
 
     Raises:
         InvalidInput: not XML, a document type, a URDF, or a link that the robot does not have.
@@ -22,8 +25,8 @@ def disabled_pairs(text: str, where: str, links: Sequence[str]) -> tuple[tuple[s
     if not text:
         return ()
     root, pairs = parse(text, where), set()
-    told = [root.find(tag) is not None for tag in ("link", "disable_collisions", "group_state")]
-    if told == [True, False, False]:
+    tags = {element.tag for element in root}
+    if "link" in tags and not tags & {"disable_collisions", "group_state"}:
         raise InvalidInput(
             where, "a URDF (it has <link> elements)", "an SRDF: disable_collisions, group_state"
         )
@@ -42,15 +45,18 @@ def disabled_pairs(text: str, where: str, links: Sequence[str]) -> tuple[tuple[s
 def named_postures(
     text: str, where: str, limits: Mapping[str, tuple[float, float]]
 ) -> dict[str, dict[str, float]]:
-    """The postures of `<group_state>`: joint values [rad or m] by joint, by name of the state.
+    """Postures of the `<group_state>` elements.
 
-    A posture speaks of the joints that it lists and of no others. States of one name in several
-    groups are one posture.
+    A posture contains only the joints that it lists. States of one name in several groups are one
+    posture.
 
     Args:
         text: the SRDF; empty for none.
         where: file or robot name that starts every message.
-        limits: lower and upper limit of each of the robot's joints, by name.
+        limits: lower and upper limit of each of the robot's joints, by name [rad or m].
+
+    Returns:
+        Joint values [rad or m] by joint, by name of the posture.
 
     Raises:
         InvalidInput: not XML, a joint that the robot does not have, or a value that is no number
@@ -63,13 +69,13 @@ def named_postures(
             raise InvalidInput(f"{where}, group_state", name, "a name")
         values = postures.setdefault(name, {})
         for joint in state.findall("joint"):
-            about, named = f"{where}, group_state '{name}'", joint.get("name")
-            if named is None or named not in limits:
-                raise unknown_name(f"{about}, joint", named, limits)
-            (value,) = numbers(f"{about}, joint '{named}'", joint.get("value"), 1)
-            lower, upper = limits[named]
+            about, joint_name = f"{where}, group_state '{name}'", joint.get("name")
+            if joint_name is None or joint_name not in limits:
+                raise unknown_name(f"{about}, joint", joint_name, limits)
+            (value,) = numbers(f"{about}, joint '{joint_name}'", joint.get("value"), 1)
+            lower, upper = limits[joint_name]
             if not lower <= value <= upper:
                 allowed = f"{lower:g} to {upper:g}"
-                raise InvalidInput(f"{about}, joint '{named}'", value, allowed)
-            values[named] = value
+                raise InvalidInput(f"{about}, joint '{joint_name}'", value, allowed)
+            values[joint_name] = value
     return postures

@@ -1,9 +1,9 @@
-"""What Pinocchio would swallow in silence, checked on the URDF text before it sees it.
+"""Validation of a URDF before Pinocchio loads it.
 
-Pinocchio drops the collision shapes of a link whose mass is not a number, turns a zero axis into
-something that is no rotation, and accepts negative masses. Each of these is an error here. So is
-what it refuses without a reason (links that form no tree, limits that lack a number), and what
-neither it nor Coal is made for: chains of many thousand links, lengths of kilometres.
+Pinocchio silently drops the collision shapes of a link whose mass is not a number, accepts negative
+masses, and makes of a zero axis a joint that does not rotate. These are errors here. So are inputs
+that Pinocchio refuses without a reason (links that form no tree, incomplete limits) and inputs for
+which neither Pinocchio nor Coal is made (chains of thousands of links, lengths of kilometres).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 
 SHAPES: dict[str, dict[str, int]] = {
@@ -23,37 +24,61 @@ SHAPES: dict[str, dict[str, int]] = {
     "capsule": {"radius": 1, "length": 1},
     "cylinder": {"radius": 1, "length": 1},
     "mesh": {},
-}  # positive sizes by attribute, and how many numbers each holds
+}
+"""Positive sizes of each shape: how many numbers each attribute contains."""
 JOINTS = ("revolute", "continuous", "prismatic", "fixed")
 LARGEST = 1000.0
-"""Most metres of any size, coordinate or prismatic limit: Coal's errors grow with the sizes, and
-1e-7 m are allowed for them."""
+"""Limit [m] of any size, coordinate or prismatic limit: Coal's errors grow with the sizes, and the
+proofs allow 1e-7 m for them."""
 HEAVIEST = 1e9
-"""Most kilograms of a body; beyond it the lighter ones are lost in rounding."""
-_TAKEN = ("universe", "root_joint")
-"""Pinocchio's own joints: what hangs on a joint of such a name it puts in a wrong place."""
+"""Limit [kg] of the mass of a body; beside heavier ones, light bodies are lost in rounding."""
+_RESERVED_JOINTS = ("universe", "root_joint")
+"""Names of Pinocchio's own joints: it misplaces children of a URDF joint with such a name."""
 _MANY = 10_000
 _LINK_PARTS = {"inertial": 1, "collision": _MANY, "visual": _MANY}
-_JOINT_PARTS = {
-    "origin": 1, "parent": 1, "child": 1, "axis": 1, "limit": 1, "mimic": 1, "dynamics": 1,
-    "calibration": 1, "safety_controller": 1,
-}  # fmt: skip
-_MOST_LINKS, _MOST_DEEP = 1000, 500
-_MOST_TEXT = 50_000_000  # characters
+_JOINT_PARTS = dict.fromkeys(
+    (
+        "origin",
+        "parent",
+        "child",
+        "axis",
+        "limit",
+        "mimic",
+        "dynamics",
+        "calibration",
+        "safety_controller",
+    ),
+    1,
+)
+_MOST_LINKS, _MOST_JOINTS_IN_A_ROW = 1000, 500
+MOST_CHARACTERS = 50_000_000
+"""Limit of the length of a URDF or SRDF."""
 
 
 class Counts(NamedTuple):
-    """What a loader must find again in the model."""
+    """Numbers of elements of a URDF, which the loaded model must have too.
+
+    Attributes:
+        links: number of links.
+        collisions: number of collision shapes.
+    """
 
     links: int
     collisions: int
 
 
 def check_urdf(text: str, where: str) -> Counts:
-    """Check the URDF `text`; `where` (a file or robot name) starts every message.
+    """Check a URDF.
+
+    Args:
+        text: the URDF.
+        where: file or robot name that starts every message.
+
+    Returns:
+        Numbers of its links and collision shapes.
 
     Raises:
-        InvalidInput: naming the link or joint, the value and what is allowed.
+        InvalidInput: names the link or joint, the value and what is allowed.
     """
     root = parse(text, where)
     _check_tree(root, where)
@@ -69,13 +94,20 @@ def check_urdf(text: str, where: str) -> Counts:
 
 
 def parse(text: str, where: str) -> ElementTree.Element:
-    """The `<robot>` element of a URDF or SRDF; entities are refused, not expanded.
+    """Parse a URDF or SRDF. Entities are refused, not expanded.
+
+    Args:
+        text: the URDF or SRDF.
+        where: file or robot name that starts every message.
+
+    Returns:
+        The `<robot>` element.
 
     Raises:
         InvalidInput: a document type, not XML, too long, or another element at the top.
     """
-    if len(text) > _MOST_TEXT:
-        raise InvalidInput(where, f"{len(text)} characters", f"at most {_MOST_TEXT}")
+    if len(text) > MOST_CHARACTERS:
+        raise InvalidInput(where, f"{len(text)} characters", f"at most {MOST_CHARACTERS}")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         raise InvalidInput(where, "a DOCTYPE or ENTITY", "plain XML without a document type")
     try:
@@ -88,7 +120,19 @@ def parse(text: str, where: str) -> ElementTree.Element:
 
 
 def numbers(where: str, text: str | None, count: int) -> list[float]:
-    """`count` finite numbers of an attribute, or `InvalidInput` that names it."""
+    """Parse and check the numbers of an attribute.
+
+    Args:
+        where: link or joint and attribute, for the message.
+        text: the attribute; None if it is missing.
+        count: how many finite numbers it must contain.
+
+    Returns:
+        The numbers.
+
+    Raises:
+        InvalidInput: other than `count` finite numbers.
+    """
     allowed = f"{count} finite number{'s' if count > 1 else ''}"
     try:
         values = [float(word) for word in (text or "").split()]
@@ -99,8 +143,22 @@ def numbers(where: str, text: str | None, count: int) -> list[float]:
     return values
 
 
+def attribute_numbers(element: ElementTree.Element, key: str, default: str = "") -> Array:
+    """Parse the numbers of an attribute that has been checked.
+
+    Args:
+        element: the element of a checked URDF.
+        key: name of the attribute.
+        default: its text if it is missing.
+
+    Returns:
+        (n,) the numbers.
+    """
+    return np.array([float(word) for word in element.get(key, default).split()])
+
+
 def _lengths(where: str, text: str | None, count: int) -> list[float]:
-    """`count` numbers of metres, none of them beyond `LARGEST`."""
+    """Parse `count` lengths [m], none of them beyond `LARGEST`; see `numbers`."""
     values = numbers(where, text, count)
     if max(map(abs, values)) > LARGEST:
         raise InvalidInput(where, values, f"at most {LARGEST:g} m")
@@ -117,33 +175,47 @@ def _check_origin(element: ElementTree.Element, where: str) -> None:
 
 
 def _check_tree(root: ElementTree.Element, where: str) -> None:
-    """Raise `InvalidInput` unless names are unique and the joints make one tree of all links."""
+    """Check that names are unique and that the joints connect all links to one tree."""
     names = {tag: _names(root, tag, where) for tag in ("link", "joint")}
     links = names["link"]
     if not 1 <= len(links) <= _MOST_LINKS:
         raise InvalidInput(f"{where}, links", len(links), f"1 to {_MOST_LINKS} links")
-    for name in _TAKEN:
+    for name in _RESERVED_JOINTS:
         if name in names["joint"]:
-            allowed = f"a name other than Pinocchio's own: {', '.join(_TAKEN)}"
+            allowed = f"a name other than Pinocchio's own: {', '.join(_RESERVED_JOINTS)}"
             raise InvalidInput(f"{where}, joint '{name}', name", name, allowed)
+    parents = _parents(root, names, where)
+    roots = [link for link in links if link not in parents]
+    if len(roots) > 1:
+        allowed = "one link that is no joint's child, with the others below it"
+        raise InvalidInput(f"{where}, root links", roots, allowed)
+    deepest = _deepest(links, parents, where)
+    if deepest > _MOST_JOINTS_IN_A_ROW:
+        allowed = f"at most {_MOST_JOINTS_IN_A_ROW}"
+        raise InvalidInput(f"{where}, links", f"{deepest} joints in a row", allowed)
+
+
+def _parents(root: ElementTree.Element, names: dict[str, list[str]], where: str) -> dict[str, str]:
+    """Parent link of each link that is the child of a joint; checks the ends of the joints."""
     parents: dict[str, str] = {}
     for joint, name in zip(root.findall("joint"), names["joint"], strict=True):
         ends = []
         for key in ("parent", "child"):
             element = joint.find(key)
             link = None if element is None else element.get("link")
-            if link is None or link not in links:
-                raise unknown_name(f"{where}, joint '{name}', {key}", link, links)
+            if link is None or link not in names["link"]:
+                raise unknown_name(f"{where}, joint '{name}', {key}", link, names["link"])
             ends.append(link)
         parent, child = ends
         if child in parents:
             raise InvalidInput(f"{where}, joint '{name}', child", child, "a link of no other joint")
         parents[child] = parent
-    roots = [link for link in links if link not in parents]
-    if len(roots) > 1:
-        allowed = "one link that is no joint's child, with the others below it"
-        raise InvalidInput(f"{where}, root links", roots, allowed)
-    depth = dict.fromkeys(roots, 0)
+    return parents
+
+
+def _deepest(links: list[str], parents: dict[str, str], where: str) -> int:
+    """Most joints in a row from the root to a link; `InvalidInput` if links form a cycle."""
+    depth = {link: 0 for link in links if link not in parents}
     for link in links:
         above: list[str] = []
         while link not in depth:
@@ -151,17 +223,14 @@ def _check_tree(root: ElementTree.Element, where: str) -> None:
                 cycle = above[above.index(link) :]
                 raise InvalidInput(f"{where}, joints", cycle, "no links that carry each other")
             above.append(link)
-            link = parents[link]  # upwards, to a link of known depth
+            link = parents[link]  # towards the root, to a link of known depth
         for known, below in enumerate(reversed(above), depth[link] + 1):
             depth[below] = known
-    if max(depth.values()) > _MOST_DEEP:
-        raise InvalidInput(
-            f"{where}, links", f"{max(depth.values())} joints in a row", f"at most {_MOST_DEEP}"
-        )
+    return max(depth.values())
 
 
 def _names(root: ElementTree.Element, tag: str, where: str) -> list[str]:
-    """Names of all links or joints, each a different one."""
+    """Names of all links or joints; checks that they differ."""
     names: dict[str, None] = {}
     for number, element in enumerate(root.findall(tag)):
         name = element.get("name")
@@ -176,7 +245,7 @@ def _names(root: ElementTree.Element, tag: str, where: str) -> list[str]:
 def _check_inertia(link: ElementTree.Element, where: str) -> None:
     inertial = link.find("inertial")
     if inertial is None:
-        return  # a frame without mass; that each moving body has one is checked after loading
+        return  # a frame; `check_loaded` checks that each moving body has a mass
     _check_origin(inertial, f"{where}, inertial")
     mass, inertia = inertial.find("mass"), inertial.find("inertia")
     if mass is None or inertia is None:
@@ -188,8 +257,8 @@ def _check_inertia(link: ElementTree.Element, where: str) -> None:
         key: numbers(f"{where}, {key}", inertia.get(key), 1)[0]
         for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
     }
-    frame = value == 0.0 and not any(entry.values())  # some files say so of tool frames
-    if value <= 0.0 and not frame:
+    is_frame = value == 0.0 and not any(entry.values())  # some files have such tool frames
+    if value <= 0.0 and not is_frame:
         allowed = "greater than 0 kg, or 0 kg without inertia for a frame"
         raise InvalidInput(f"{where}, mass", value, allowed)
     tensor = np.array(
@@ -212,8 +281,8 @@ def _check_collision(collision: ElementTree.Element, where: str) -> None:
     _check_origin(collision, where)
     shapes = collision.findall("geometry/*")
     if len(shapes) != 1 or shapes[0].tag not in SHAPES:
-        found = ", ".join(shape.tag for shape in shapes) or None
-        raise InvalidInput(where, found, f"one shape of: {', '.join(SHAPES)}")
+        tags = ", ".join(shape.tag for shape in shapes) or None
+        raise InvalidInput(where, tags, f"one shape of: {', '.join(SHAPES)}")
     shape = shapes[0]
     where = f"{where} {shape.tag}"
     for key, count in SHAPES[shape.tag].items():
@@ -229,9 +298,9 @@ def _check_collision(collision: ElementTree.Element, where: str) -> None:
 
 
 def _check_parts(element: ElementTree.Element, where: str, known: dict[str, int]) -> None:
-    """Raise `InvalidInput` for what looks like a known part misspelt, and for one given twice.
+    """Check that no known part is misspelt or occurs too often.
 
-    Other parts, which some tools add, are left to them.
+    Other parts, which some tools add, are ignored.
     """
     tags = [part.tag for part in element if isinstance(part.tag, str)]
     for tag in tags:
@@ -255,9 +324,13 @@ def _check_joint(joint: ElementTree.Element, where: str) -> None:
         if abs(math.hypot(*values) - 1.0) > 1e-3:
             raise InvalidInput(f"{where}, axis", values, "a vector of length 1")
     _check_origin(joint, where)
+    _check_limit(joint, kind, where)
+
+
+def _check_limit(joint: ElementTree.Element, kind: str, where: str) -> None:
     limit = joint.find("limit")
     if limit is not None:
-        for key in ("effort", "velocity"):  # not used, but Pinocchio takes no limit without them
+        for key in ("effort", "velocity"):  # not used, but Pinocchio refuses limits without them
             (value,) = numbers(f"{where}, limit, {key}", limit.get(key), 1)
             if value < 0.0:
                 raise InvalidInput(f"{where}, limit, {key}", value, "at least 0")

@@ -1,4 +1,4 @@
-"""Arms to be mounted on a bus: where their URDFs are found, and their joints that are locked."""
+"""Arms to mount on a bus: their URDFs, and locked joints."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.srdf import disabled_pairs
-from ffsr_plan.robots.urdf_validation import check_urdf, numbers, parse
+from ffsr_plan.robots.urdf_validation import attribute_numbers, check_urdf, numbers, parse
 
 _UR = "ur_description/srdf/ur5.srdf"
 ARMS = {
@@ -23,7 +24,7 @@ ARMS = {
     "panda": ("panda_description/urdf/panda.urdf", "panda_description/srdf/panda.srdf"),
     "so100": ("so_arm_description/urdf/so100.urdf", ""),
     "so101": ("so_arm_description/urdf/so101.urdf", ""),
-    "ur10": ("ur_description/urdf/ur10_robot.urdf", _UR),  # of the same build as the UR5
+    "ur10": ("ur_description/urdf/ur10_robot.urdf", _UR),  # same links as the UR5
     "ur3": ("ur_description/urdf/ur3_robot.urdf", _UR),
     "ur5": ("ur_description/urdf/ur5_robot.urdf", _UR),
     "xarm7": ("xarm_description/urdf/xarm7.urdf", "xarm_description/srdf/xarm7.srdf"),
@@ -33,21 +34,25 @@ ARMS = {
 
 
 class Arm(NamedTuple):
-    """An arm's URDF, checked, its locked joints fixed."""
+    """An arm's URDF, checked, its locked joints fixed.
+
+    Attributes:
+        robot: the `<robot>` element.
+        root: name of the link that is mounted on the bus.
+        folders: folders in which its meshes are looked up.
+        where: name of the arm in messages.
+        may_touch: pairs of links that its SRDF exempts from self-collision.
+    """
 
     robot: ElementTree.Element
     root: str
-    """Name of the link that is mounted."""
     folders: tuple[str, ...]
-    """Where its meshes are looked up."""
     where: str
-    """What messages call it."""
     may_touch: tuple[tuple[str, str], ...]
-    """Links that its SRDF exempts from the check for self-collision."""
 
 
 def arm_names() -> list[str]:
-    """Names of the arms that `compose` knows, all from example-robot-data."""
+    """Names of the arms that `compose` accepts, all from example-robot-data."""
     return sorted(ARMS)
 
 
@@ -58,16 +63,19 @@ def load_arm(
 
     Args:
         source: one of `arm_names()`, or a path.
-        locked: joints to be fixed, by the arm's own names, at a value [rad, or m where prismatic].
-            Joints that mimic one of these are fixed as well, where it puts them.
-        srdf: path to an SRDF; an arm of a name brings its own, where there is one.
+        locked: joints to fix, by the arm's own names, at a value [rad, or m where prismatic].
+            Joints that mimic a locked joint are fixed too, at the value that follows from it.
+        srdf: path to an SRDF; an arm given by its name has its own, if there is one.
+
+    Returns:
+        The arm.
 
     Raises:
         InvalidInput: no such arm or file, a URDF or SRDF that cannot be used, an unknown joint, a
             value outside the joint's limits, or a joint that mimics one that is not locked.
     """
     path, own, folders = _find(source)
-    text = _read("arm", path)
+    text = read_text("arm", path)
     where = f"arm {source}"
     robot = parse(text, where)
     mimics = _take_mimics(robot)
@@ -76,20 +84,14 @@ def load_arm(
     children = {str(child.get("link")) for child in robot.iterfind("joint/child")}
     names = [str(link.get("name")) for link in robot.findall("link")]
     root = next(name for name in names if name not in children)
-    told = own if srdf is None else Path(srdf)
-    pairs = disabled_pairs("" if told is None else _read("srdf", told), f"{where}, SRDF", names)
+    srdf_path = own if srdf is None else Path(srdf)
+    srdf_text = "" if srdf_path is None else read_text("srdf", srdf_path)
+    pairs = disabled_pairs(srdf_text, f"{where}, SRDF", names)
     return Arm(robot, root, folders, where, pairs)
 
 
-def _read(what: str, path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInput(what, str(path), f"a readable UTF-8 file ({error})") from None
-
-
 def _find(source: str | Path) -> tuple[Path, Path | None, tuple[str, ...]]:
-    """URDF, SRDF, and the folders of the meshes."""
+    """Paths of the URDF and, if there is one, of the SRDF, and the folders of the meshes."""
     path = Path(source)
     if path.suffix == ".urdf":
         if not path.is_file():
@@ -108,7 +110,7 @@ def _find(source: str | Path) -> tuple[Path, Path | None, tuple[str, ...]]:
 
 
 def _take_mimics(robot: ElementTree.Element) -> dict[str, ElementTree.Element]:
-    """The `<mimic>` of each moving joint, taken out of the robot; fixed joints follow nothing."""
+    """Remove all `<mimic>` elements from the robot; returns those of moving joints by joint."""
     mimics = {}
     for joint in robot.findall("joint"):
         for mimic in joint.findall("mimic"):
@@ -124,7 +126,7 @@ def _lock(
     locked: Mapping[str, float],
     where: str,
 ) -> None:
-    """Turn joints into fixed ones, in place."""
+    """Make joints fixed, in place."""
     joints = {str(j.get("name")): j for j in robot.findall("joint") if j.get("type") != "fixed"}
     free = [name for name in joints if name not in mimics]
     values = {}
@@ -155,34 +157,32 @@ def _limits(joint: ElementTree.Element) -> tuple[float, float]:
 
 
 def _fix(joint: ElementTree.Element, value: float) -> None:
-    """Hold a joint at a value [rad or m], in place."""
+    """Fix a joint at a value [rad or m], in place."""
     origin = joint.find("origin")
     if origin is None:
         origin = ElementTree.SubElement(joint, "origin")
-    place = np.array([float(word) for word in origin.get("xyz", "0 0 0").split()])
-    gamma, beta, alpha = (float(word) for word in origin.get("rpy", "0 0 0").split())
-    turn = rotations.from_angles(np.array([alpha, beta, gamma]))
-    along = joint.find("axis")
-    words = "1 0 0" if along is None else str(along.get("xyz"))
-    axis = np.array([float(word) for word in words.split()])
+    position = attribute_numbers(origin, "xyz", "0 0 0")
+    rotation = rotations.from_angles(attribute_numbers(origin, "rpy", "0 0 0")[::-1])
+    element = joint.find("axis")
+    axis = np.array([1.0, 0.0, 0.0]) if element is None else attribute_numbers(element, "xyz")
     axis /= np.linalg.norm(axis)
     if joint.get("type") == "prismatic":
-        place = place + rotations.rotate(turn, value * axis)
+        position = position + rotations.rotate(rotation, value * axis)
     else:
-        turn = rotations.multiply(turn, rotations.exp(value * axis))
-        origin.set("rpy", " ".join(map(repr, _rpy(rotations.matrix(turn)))))
-    origin.set("xyz", " ".join(map(repr, place.tolist())))
+        rotation = rotations.multiply(rotation, rotations.exp(value * axis))
+        origin.set("rpy", " ".join(map(repr, _rpy(rotations.matrix(rotation)))))
+    origin.set("xyz", " ".join(map(repr, position.tolist())))
     joint.set("type", "fixed")
     for tag in ("axis", "limit"):
-        for element in joint.findall(tag):
-            joint.remove(element)
+        for part in joint.findall(tag):
+            joint.remove(part)
 
 
 def _rpy(rotation: Array) -> tuple[float, float, float]:
-    """Turns about the fixed x, y and z axes; exact also near the singularity of these angles."""
+    """Roll, pitch and yaw of a rotation matrix (3, 3); accurate near their singularity too."""
     about_z = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
     about_y = float(np.arctan2(-rotation[2, 0], np.hypot(rotation[0, 0], rotation[1, 0])))
     sine, cosine = np.sin(about_z), np.cos(about_z)
-    # what is left once the turn about z is undone: whatever that was, the three agree
+    # second row of Rz(-yaw) R: roll fits the yaw used, also where yaw is arbitrary
     rest = -sine * rotation[0] + cosine * rotation[1]
     return float(np.arctan2(-rest[2], rest[1])), about_y, about_z

@@ -1,30 +1,39 @@
-"""A satellite put together: arms mounted on a bus, as one plain URDF.
+"""Composition of a satellite: arms mounted on a bus, as one self-contained URDF.
 
-Plain means boxes, spheres and cylinders: Pinocchio's own reader drops capsules, yourdfpy refuses
-them, and addresses of meshes hold on one machine only.
+Meshes become boxes, because the address of a mesh is valid on one machine only. Capsules of an arm
+are kept, although Pinocchio's own reader drops them and yourdfpy refuses them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import cast
+from typing import Annotated, Any
 from xml.etree import ElementTree
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ffsr_plan.core.checks import finite_array, number, one_of
+from ffsr_plan.core.checks import number, one_of
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.rules import NamedNumbers, Numbers, Rule, Text, Vector
+from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.meshes.box_cover import boxes_around
 from ffsr_plan.meshes.hull_reduction import beyond
 from ffsr_plan.meshes.mesh_files import find, hull, surface
 from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
+from ffsr_plan.robots.urdf_validation import LARGEST, attribute_numbers
 from ffsr_plan.satellites.arms import Arm, load_arm
-from ffsr_plan.satellites.bus import Bus, box_shape, elements, fixed_joint, place, text
+from ffsr_plan.satellites.bus import Bus
+from ffsr_plan.satellites.urdf_xml import (
+    attribute_text,
+    box_shape,
+    bus_elements,
+    comment,
+    fixed_joint,
+)
 
 SHAPES = ("boxes", "meshes")
 _NO_INERTIA = (
@@ -33,50 +42,53 @@ _NO_INERTIA = (
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class PathOrName(Rule):
+    """A path, or a name; for an SRDF also None."""
+
+    meaning: str
+    optional: bool = False
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
+        """See `Rule.check`."""
+        if isinstance(value, (str, Path)) or (self.optional and value is None):
+            return value
+        raise InvalidInput(what, value, self.meaning)
+
+
+@settings(eq=False, of="a mount")
 class Mount:
     """An arm and its place on the bus.
 
-    Args:
+    Attributes:
         arm: the name of an arm (see `arm_names`), or a path to a `.urdf` file.
         position: (3,) origin of the arm's root link in the bus frame [m].
         attitude: (3,) ZYX angles (alpha, beta, gamma) of that link in the bus frame [rad].
-        prefix: goes before the names of the arm's links and joints.
+        prefix: put before the names of the arm's links and joints.
         locked: joints of the arm that are fixed, by the arm's own names, at a value [rad, or m
-            where prismatic]; the planner does not move them. A joint that mimics another one can
-            only be fixed, by locking the other.
-        srdf: path to an SRDF of the arm, by whose `<disable_collisions>` links may touch. An arm of
-            a name brings its own, if example-robot-data has one.
+            where prismatic]; the planner does not move them. If other joints mimic a joint, lock
+            that joint: the others are fixed with it.
+        srdf: path to an SRDF of the arm, by whose `<disable_collisions>` links may touch. An arm
+            given by its name has its own, if example-robot-data has one.
 
     Raises:
-        InvalidInput: what is not finite, or of another kind.
+        InvalidInput: a value that is not finite, or of another type.
     """
 
-    arm: str | Path
-    position: ArrayLike = (0.0, 0.0, 0.0)
-    attitude: ArrayLike = (0.0, 0.0, 0.0)
-    prefix: str = ""
-    locked: Mapping[str, float] = field(default_factory=dict)
-    srdf: str | Path | None = None
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.arm, (str, Path)):
-            raise InvalidInput("arm", self.arm, "a name or a path")
-        if not isinstance(self.prefix, str):
-            raise InvalidInput("prefix", self.prefix, "a text, such as 'left_'")
-        if not isinstance(self.locked, Mapping):
-            raise InvalidInput("locked", self.locked, "a mapping from joint names to values")
-        if self.srdf is not None and not isinstance(self.srdf, (str, Path)):
-            raise InvalidInput("srdf", self.srdf, "a path")
-        fill = object.__setattr__
-        fill(self, "position", place("position of a mount", self.position))
-        fill(self, "attitude", finite_array("attitude of a mount", self.attitude, (3,)))
-        fill(self, "locked", dict(self.locked))
+    arm: Annotated[str | Path, PathOrName("a name or a path")]
+    position: Annotated[Vector, Numbers(3, at_most=LARGEST)] = setting(default=(0.0, 0.0, 0.0))
+    attitude: Annotated[Vector, Numbers(3)] = setting(default=(0.0, 0.0, 0.0))
+    prefix: Annotated[str, Text("a text, such as 'left_'")] = ""
+    locked: Annotated[
+        Given[dict[str, float], Mapping[str, float]],
+        NamedNumbers("a mapping from joint names to values"),
+    ] = setting(default_factory=dict)
+    srdf: Annotated[str | Path | None, PathOrName("a path", optional=True)] = None
 
 
 def compose(
     bus: Bus,
-    arms: Sequence[Mount | tuple[object, ...]],
+    arms: Sequence[Mount],
     name: str = "satellite",
     *,
     shapes: str = "boxes",
@@ -85,24 +97,27 @@ def compose(
 ) -> SpaceRobot:
     """Mount arms on a bus.
 
-    `robot.urdf` is the text, `robot.save(path)` writes it. Masses, inertias, joints and limits are
-    the arms' own; links without mass stay without. Boxes, spheres, cylinders and capsules stay what
-    they are (of these, only capsules are unknown to some readers). Meshes give way to boxes, up to
-    three each, which hold all that the mesh encloses; a comment beside them in the URDF names the
-    mesh and how far they reach beyond its convex hull. The file then needs no other.
+    `robot.urdf` is the URDF text, and `robot.save(path)` writes it. Masses, inertias, joints and
+    limits are those of the arms; links without mass stay without mass. Boxes, spheres, cylinders
+    and capsules stay as they are. A mesh is replaced by up to three boxes, which contain all that
+    the mesh encloses; a comment in the URDF states the mesh's name and how far the boxes protrude
+    from its convex hull. The URDF then needs no other file.
 
     Args:
-        bus: the bus, the robot's root link, in whose frame arms are mounted.
-        arms: a `Mount` each, or a tuple (arm, (position, attitude), prefix).
-        name: of the robot.
-        shapes: what collision meshes become: `boxes`, or `meshes`, which keeps them by their
-            absolute path, pictures included: for this machine only.
+        bus: the bus, the robot's root link, in whose frame the arms are mounted.
+        arms: a `Mount` for each arm.
+        name: name of the robot.
+        shapes: `boxes` to replace collision meshes by boxes, or `meshes` to keep collision and
+            visual meshes by their absolute paths; such a URDF works on this machine only.
         postures: joint values by joint, prefix included [rad or m], by name of the posture.
-        may_touch: more pairs of links, prefixes included, that are not checked against each other.
+        may_touch: further pairs of links, prefixes included, exempt from self-collision.
+
+    Returns:
+        The robot.
 
     Raises:
-        InvalidInput: names that are taken twice, an unknown arm, joint or link, a value outside a
-            joint's limits, a joint that mimics another, a mesh that cannot be read.
+        InvalidInput: names that occur twice, an unknown arm, joint or link, a value outside a
+            joint's limits, a joint that mimics another, or a mesh that cannot be read.
     """
     if not isinstance(bus, Bus):
         raise InvalidInput("bus", bus, "a Bus")
@@ -111,9 +126,12 @@ def compose(
     one_of("shapes", shapes, SHAPES)
     if not isinstance(arms, Sequence) or isinstance(arms, str):
         raise InvalidInput("arms", arms, "a sequence of Mounts")
-    mounts = [_mount(entry) for entry in arms]
-    loaded = [load_arm(mount.arm, mount.locked, mount.srdf) for mount in mounts]
-    both = list(zip(loaded, mounts, strict=True))
+    for mount in arms:
+        if not isinstance(mount, Mount):
+            allowed = "Mounts, such as Mount('ur5', position=(0, 0, 0.5), prefix='left_')"
+            raise InvalidInput("arms", mount, allowed)
+    loaded = [load_arm(mount.arm, mount.locked, mount.srdf) for mount in arms]
+    both = list(zip(loaded, arms, strict=True))
     return put_together(bus, both, name, shapes, postures or {}, may_touch)
 
 
@@ -125,9 +143,21 @@ def put_together(
     postures: Mapping[str, Mapping[str, float]],
     may_touch: Sequence[tuple[str, str]],
 ) -> SpaceRobot:
-    """The same for arms that have been read; see `compose`."""
+    """Compose a satellite from arms that have been read; see `compose`.
+
+    Args:
+        bus: the bus.
+        arms: the arms and their mounts.
+        name: name of the robot.
+        shapes: `boxes` or `meshes`.
+        postures: joint values by joint, by name of the posture [rad or m].
+        may_touch: further pairs of links exempt from self-collision.
+
+    Returns:
+        The robot.
+    """
     robot = ElementTree.Element("robot", name=name)
-    robot.extend(elements(bus))
+    robot.extend(bus_elements(bus))
     pairs = []
     for arm, mount in arms:
         root = mount.prefix + arm.root
@@ -135,7 +165,7 @@ def put_together(
         own = [part for part in arm.robot if part.tag in ("link", "joint")]
         parts = [joint, *(_renamed(part, arm, mount.prefix, shapes) for part in own)]
         _check_names(robot, parts, arm, mount.prefix)
-        robot.append(_comment(f"arm {Path(arm.where.removeprefix('arm ')).name}"))
+        robot.append(comment(f"arm {Path(arm.where.removeprefix('arm ')).name}"))
         robot.extend(parts)
         pairs += [(mount.prefix + one, mount.prefix + two) for one, two in arm.may_touch]
     ElementTree.indent(robot)
@@ -143,22 +173,10 @@ def put_together(
     return robot_from_urdf(urdf, name, srdf=_srdf(name, postures, [*pairs, *may_touch]))
 
 
-def _mount(entry: object) -> Mount:
-    if isinstance(entry, Mount):
-        return entry
-    allowed = "a Mount, or (arm, (position, attitude), prefix)"
-    if not isinstance(entry, (tuple, list)) or len(entry) != 3:
-        raise InvalidInput("arms", entry, allowed)
-    arm, pose, prefix = entry
-    if not isinstance(pose, (tuple, list)) or len(pose) != 2:
-        raise InvalidInput("arms", entry, allowed)
-    return Mount(arm, pose[0], pose[1], prefix)
-
-
 def _check_names(
     robot: ElementTree.Element, parts: list[ElementTree.Element], arm: Arm, prefix: str
 ) -> None:
-    """Raise `InvalidInput` where links or joints have the names of others."""
+    """Check that the names of an arm's links and joints are not yet used."""
     for tag in ("link", "joint"):
         taken = {element.get("name") for element in robot.findall(tag)}
         twice = [
@@ -166,12 +184,12 @@ def _check_names(
         ]
         if twice:
             about = f"{arm.where}, prefix '{prefix}', {tag}s"
-            allowed = f"{tag} names of their own; another prefix gives them some"
+            allowed = f"{tag} names that occur once; give the arm another prefix"
             raise InvalidInput(about, ", ".join(map(str, twice)), allowed)
 
 
 def _renamed(part: ElementTree.Element, arm: Arm, prefix: str, shapes: str) -> ElementTree.Element:
-    """A copy of a link or joint with what a plain URDF needs of it."""
+    """A copy of a link or joint with prefixed names, reduced to what a robot needs."""
     copy = ElementTree.Element(part.tag, name=prefix + str(part.get("name")))
     if part.tag == "joint":
         copy.set("type", str(part.get("type")))
@@ -182,9 +200,9 @@ def _renamed(part: ElementTree.Element, arm: Arm, prefix: str, shapes: str) -> E
         copy.extend(part.findall("origin"))
         copy.extend([] if fixed else [*part.findall("axis"), *part.findall("limit")])
         return copy
-    # said also where it is nothing: engines make up a mass for shapes that have none
-    none = ElementTree.fromstring(_NO_INERTIA)
-    copy.append(none if (inertial := part.find("inertial")) is None else inertial)
+    # links without mass get an explicit zero: engines invent a mass for shapes without inertial
+    massless = ElementTree.fromstring(_NO_INERTIA)
+    copy.append(massless if (inertial := part.find("inertial")) is None else inertial)
     if shapes == "meshes":
         copy.extend(_with_addresses(shape, arm) for shape in part.findall("visual"))
     for collision in part.findall("collision"):
@@ -199,14 +217,14 @@ def _renamed(part: ElementTree.Element, arm: Arm, prefix: str, shapes: str) -> E
 
 
 def _bare(shape: ElementTree.Element) -> ElementTree.Element:
-    """A `<collision>` or `<visual>` of nothing but its place and geometry."""
+    """A copy of a `<collision>` or `<visual>` with its origin and geometry only."""
     copy = ElementTree.Element(shape.tag)
     copy.extend([*shape.findall("origin"), *shape.findall("geometry")])
     return copy
 
 
 def _with_addresses(shape: ElementTree.Element, arm: Arm) -> ElementTree.Element:
-    """The same shape, its mesh addressed by an absolute path where the file is found."""
+    """A copy of a shape, its mesh addressed by an absolute path if the file exists."""
     copy = _bare(shape)
     for mesh in copy.findall("geometry/mesh"):
         path = find(mesh.get("filename", ""), arm.folders)
@@ -218,9 +236,9 @@ def _with_addresses(shape: ElementTree.Element, arm: Arm) -> ElementTree.Element
 def _boxes(
     collision: ElementTree.Element, mesh: ElementTree.Element, arm: Arm, link: str
 ) -> list[ElementTree.Element]:
-    """Boxes instead of a collision mesh, after a comment that says so."""
+    """Boxes that replace a collision mesh, after a comment that names the mesh."""
     where, address = f"{arm.where}, link '{link}', collision mesh", str(mesh.get("filename"))
-    scale = np.array(mesh.get("scale", "1 1 1").split(), dtype=np.float64)
+    scale = attribute_numbers(mesh, "scale", "1 1 1")
     triangles = surface(address, arm.folders, where) * scale
     boxes = boxes_around(triangles)
     corners, _ = hull(triangles.reshape(-1, 3), where, address)
@@ -228,25 +246,21 @@ def _boxes(
     points = [list(product(*pair.T)) for pair in ends]
     excess = max(0.0, float(beyond(corners, np.concatenate(points)).max()))
     frame, rpy = origin(collision), "0 0 0"
-    if (place_of := collision.find("origin")) is not None:
-        rpy = place_of.get("rpy", rpy)
+    if (element := collision.find("origin")) is not None:
+        rpy = element.get("rpy", rpy)
     count = "a box" if len(boxes) == 1 else f"{len(boxes)} boxes"
     about = f"{count} around {Path(address).name}, at most {1e3 * excess:.1f} mm beyond its hull"
-    found = [_comment(about)]
+    elements = [comment(about)]
     for low, high in ends:
-        middle = frame.act(0.5 * (low + high)).round(12)
-        found.append(box_shape("collision", (high - low).round(7), middle, rpy))
-    return found
-
-
-def _comment(words: str) -> ElementTree.Element:
-    return cast("ElementTree.Element", ElementTree.Comment(f" {words.replace('--', '__')} "))
+        center = frame.act(0.5 * (low + high)).round(12)
+        elements.append(box_shape("collision", (high - low).round(7), center, rpy))
+    return elements
 
 
 def _srdf(
     name: str, postures: Mapping[str, Mapping[str, float]], may_touch: Sequence[tuple[str, str]]
 ) -> str:
-    """Postures and exempt pairs as an SRDF; empty where there are none."""
+    """Postures and exempt pairs as an SRDF; empty if there are none."""
     if not isinstance(postures, Mapping):
         raise InvalidInput("postures", postures, "joint values by joint, by name of the posture")
     root = ElementTree.Element("robot", name=name)
@@ -258,7 +272,7 @@ def _srdf(
         state = ElementTree.SubElement(root, "group_state", name=posture, group="arms")
         for joint, value in joints.items():
             checked = number(f"postures['{posture}'], '{joint}'", value)
-            ElementTree.SubElement(state, "joint", name=str(joint), value=text(checked))
+            ElementTree.SubElement(state, "joint", name=str(joint), value=attribute_text(checked))
     for pair in may_touch:
         if len(pair) != 2 or not all(isinstance(link, str) for link in pair):
             raise InvalidInput("may_touch", pair, "pairs of link names")

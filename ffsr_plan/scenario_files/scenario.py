@@ -1,35 +1,20 @@
-"""Scenario files: TOML, through a schema, to a `Problem` with a planner and a seed."""
+"""Scenario files: TOML that describes a problem, a planner and a seed."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, NamedTuple
-
-import pydantic
-from pydantic import BaseModel
 
 from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, one_of, whole_number
-from ffsr_plan.core.errors import InvalidInput, unknown_name
-from ffsr_plan.dynamics.mode import Mode
-from ffsr_plan.plans.planners import PLANNERS, Planner
-from ffsr_plan.problem.end_effector_goal import inverse_kinematics
-from ffsr_plan.problem.lattice_settings import Axis, Lattice, PostureAxis
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.settings import from_mapping
+from ffsr_plan.plans.planners import Planner
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.robots.robot import SpaceRobot, load_robot
-from ffsr_plan.scenario_files.scenario_tables import (
-    OBSTACLES,
-    OF_A_MESH,
-    GoalTable,
-    ObstacleTable,
-    PostureTable,
-    ScenarioFile,
-)
-from ffsr_plan.scene.generators import belt, cloud, gate, scatter, truss
+from ffsr_plan.scenario_files.scenario_tables import ScenarioFile
 from ffsr_plan.scene.scene import Scene
 
 if sys.version_info >= (3, 11):
@@ -37,228 +22,148 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+GENERATORS = ("clouds", "belts", "scatters", "trusses", "gates")
+"""Tables that make obstacles by a function of `generators`, in the order of the scene."""
 
-class Scenario(NamedTuple):
-    """What a scenario file asks for."""
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Scenario:
+    """Contents of a scenario file.
+
+    Attributes:
+        title: of the scenario, may be empty.
+        problem: what to plan.
+        planner: the planner that the file names, or None for the default of the lattice.
+        seed: of the planner's random numbers.
+        refine: whether to move the path off the lattice after the search, or None for the default
+            of `plan`.
+    """
 
     title: str
     problem: Problem
-    planner: Planner
+    planner: Planner | None
     seed: int
-    refine: bool
+    refine: bool | None
+
+    @classmethod
+    def load(cls, source: str | Path) -> Scenario:
+        """Read a scenario file.
+
+        Args:
+            source: path of a TOML file, or name of a bundled scenario ("fig2a").
+
+        Raises:
+            InvalidInput: no such file, not TOML, an unknown key (the nearest one is suggested), a
+                wrong type or a value that is not allowed; the message names file and field.
+            PoseOutOfReach, GoalInCollision: no goal configuration for the pose of an end effector.
+        """
+        if not isinstance(source, (str, Path)):
+            raise InvalidInput("scenario", source, "a name or a path")
+        path = bundled_files.find("scenarios", str(source), ".toml") or Path(source)
+        what = f"scenario '{source}'"
+        try:
+            data = tomllib.loads(path.read_text(encoding="utf-8"))
+        except tomllib.TOMLDecodeError as error:
+            raise InvalidInput(what, str(error), "a TOML file") from None
+        except (OSError, ValueError) as error:
+            known = ", ".join(bundled_files.names("scenarios", ".toml"))
+            raise InvalidInput(
+                what, type(error).__name__, f"a readable file, or one of: {known}"
+            ) from None
+        try:
+            return _scenario(from_mapping(ScenarioFile, data), path.parent)
+        except InvalidInput as error:
+            place = f"{what}: {error.what.removeprefix('.')}"
+            raise InvalidInput(place, error.value, error.allowed) from None
+
+    def __repr__(self) -> str:
+        planner = "default" if self.planner is None else self.planner.name
+        return (
+            f"Scenario({self.title!r}, {self.problem!r}, planner={planner}, seed={self.seed}, "
+            f"refine={self.refine})"
+        )
 
 
 def load_scenario(source: str | Path) -> Problem:
-    """The problem of a scenario file; see `read_scenario`."""
-    return read_scenario(source).problem
-
-
-def read_scenario(source: str | Path) -> Scenario:
-    """Read a scenario.
+    """The problem of a scenario file; `Scenario.load` gives planner and seed as well.
 
     Args:
-        source: path to a TOML file, or name of a bundled scenario ("fig2a").
+        source: path of a TOML file, or name of a bundled scenario ("fig2a").
 
     Raises:
-        InvalidInput: no such file, not TOML, an unknown key (the nearest one is suggested), a wrong
-            type or a value that is not allowed; the message names file and field.
+        InvalidInput, PoseOutOfReach, GoalInCollision: see `Scenario.load`.
     """
-    if not isinstance(source, (str, Path)):
-        raise InvalidInput("scenario", source, "a name or a path")
-    path = bundled_files.find("scenarios", str(source), ".toml") or Path(source)
-    what = f"scenario '{source}'"
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidInput(what, str(error), "a TOML file") from None
-    except (OSError, ValueError) as error:
-        known = ", ".join(bundled_files.names("scenarios", ".toml"))
-        raise InvalidInput(
-            what, type(error).__name__, f"a readable file, or one of: {known}"
-        ) from None
-    try:
-        file = ScenarioFile.model_validate(data)
-    except pydantic.ValidationError as error:
-        # a misspelt key also leaves the right one missing: speak of the misspelling first
-        first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-        raise _explain(what, first) from None
-    try:
-        return _build(file, path.parent)
-    except InvalidInput as error:
-        raise InvalidInput(f"{what}: {error.what}", error.value, error.allowed) from None
+    return Scenario.load(source).problem
 
 
-def _build(file: ScenarioFile, folder: Path) -> Scenario:
-    source = file.robot.urdf
-    robot = load_robot(
-        folder / source if source.endswith(".urdf") else source,
-        [folder / entry for entry in file.robot.package_dirs],
-        srdf=None if file.robot.srdf is None else folder / file.robot.srdf,
-        meshes=file.robot.meshes,
-        cylinders=file.robot.cylinders,
-    )
-    mode = Mode.parse("robot.mode", file.robot.mode)
-    posed = file.goal.end_effector is not None
-    reach = file.goal.attitude is not None and mode.attitude_reacts
-    if reach and not file.lattice.postures:
-        raise InvalidInput(
-            "goal.attitude",
-            file.goal.attitude,
-            f"no goal attitude in the mode {mode}, where it follows from the arms, on a lattice "
-            "without posture axes; leave it out, or use mode = 'attitude-held'",
-        )
-    if file.goal.position is not None and mode.floats:
-        raise InvalidInput(
-            "goal.position",
-            file.goal.position,
-            "no goal position in the mode free-floating, where it follows from the arms",
-        )
+def _scenario(file: ScenarioFile, folder: Path) -> Scenario:
+    """The scenario of checked tables; paths in them are relative to `folder`."""
+    robot, mode = file.robot.robot(folder), file.robot.mode
+    _check_goal(file)
     with _in_table("start"):
-        start = robot.configuration(**file.start.model_dump())
-    base = start[:3] if posed and mode.floats else _place(file.goal)
-    scene = _scene(file, folder, [start[:3], base])
+        start = file.start.configuration(robot)
+    base_stays = file.goal.end_effector is not None and mode.floats
+    base_goal = start[:3] if base_stays else file.goal.base_position
+    scene = _scene(file, folder, [start[:3], base_goal])
     with _in_table("goal"):
-        goal = _goal(file.goal, robot, scene, start, mode)
-    axes = {
-        name: Axis(**axis.model_dump())
-        for name in ("lateral", "normal")
-        if (axis := getattr(file.lattice, name)) is not None
-    }
+        goal = file.goal.configuration(robot, scene, start, mode)
+    demanded = file.goal.attitude is not None or file.goal.end_effector is not None
     problem = Problem(
         robot,
         scene,
         start=start,
         goal=goal,
         mode=mode,
-        lattice=Lattice(
-            divisions=file.lattice.divisions,
-            lateral=axes.get("lateral"),
-            normal=axes.get("normal"),
-            postures=[_posture_axis(k, table) for k, table in enumerate(file.lattice.postures)],
-        ),
-        reach_attitude=reach or bool(posed and file.lattice.postures and mode.attitude_reacts),
-        **file.objective.model_dump(),
+        lattice=file.lattice,
+        reach_attitude=demanded and mode.attitude_reacts and bool(file.lattice.postures),
+        **{each.name: getattr(file.objective, each.name) for each in fields(file.objective)},
     )
-    wanted = file.planner
-    kind = PLANNERS[one_of("planner.name", wanted.name, list(PLANNERS))]
-    settings = wanted.model_dump(exclude={"name", "seed", "refine"}, exclude_none=True)
-    for key in settings:
-        if key not in kind.__dataclass_fields__:
-            known = [name for name in kind.__dataclass_fields__ if name != "name"]
-            raise unknown_name(f"planner ({kind.name})", key, known)
-    seed = whole_number("planner.seed", wanted.seed, at_least=0)
-    return Scenario(file.title, problem, kind(**settings), seed, wanted.refine)
+    planner = file.planner
+    return Scenario(file.title, problem, planner.planner(), planner.seed, planner.refine)
 
 
-def _place(table: GoalTable) -> Array:
-    """(3,) where the base is to go [m]."""
-    return finite_array("goal: position", table.position or (0.0, 0.0, 0.0), (3,), FARTHEST)
-
-
-def _goal(table: GoalTable, robot: SpaceRobot, scene: Scene, start: Array, mode: Mode) -> Array:
-    """The goal configuration (nq,), by inverse kinematics where a pose is given."""
-    wanted = table.end_effector
-    if wanted is None:
-        return robot.configuration(_place(table), table.attitude or (0.0, 0.0, 0.0), table.joints)
-    if table.joints:
-        raise InvalidInput("joints", table.joints, "none beside end_effector: they follow from it")
-    if table.attitude is not None and mode.attitude_reacts:
+def _check_goal(file: ScenarioFile) -> None:
+    """Raise `InvalidInput` where the mode does not prescribe what the goal demands."""
+    goal, mode = file.goal, file.robot.mode
+    if goal.attitude is not None and mode.attitude_reacts:
+        if goal.end_effector is not None:
+            raise InvalidInput(
+                "goal.attitude",
+                goal.attitude,
+                f"none beside end_effector in the mode {mode}, where it follows from the arms",
+            )
+        if not file.lattice.postures:
+            raise InvalidInput(
+                "goal.attitude",
+                goal.attitude,
+                f"no goal attitude in the mode {mode}, where it follows from the arms, on a "
+                "lattice without posture axes; leave it out, or use mode = 'attitude-held'",
+            )
+    if goal.position is not None and mode.floats:
         raise InvalidInput(
-            "attitude", table.attitude, f"none beside end_effector in the mode {mode}"
+            "goal.position",
+            goal.position,
+            "no goal position in the mode free-floating, where it follows from the arms",
         )
-    floats = mode.floats
-    with _in_table("end_effector"):
-        return inverse_kinematics(
-            robot, wanted.frame, wanted.position, wanted.attitude,
-            start=start,
-            mode=mode,
-            base_position=None if floats else _place(table),
-            base_attitude=(table.attitude or (0.0, 0.0, 0.0)) if mode.has_wheels else None,
-            scene=scene,
-            seed=wanted.seed,
-        )  # fmt: skip
 
 
-def _scene(file: ScenarioFile, folder: Path, ends: list[Array]) -> Scene:
-    """All obstacles; `ends` (3,) are what clouds and belts spare."""
+def _scene(file: ScenarioFile, folder: Path, ends: Sequence[Array]) -> Scene:
+    """All obstacles; generated ones keep away from base positions `ends` (3,) [m]."""
     scene = Scene()
-    for place, obstacle in enumerate(file.obstacles):
-        scene += _obstacle(f"obstacles.{place}", obstacle, folder)
-    makers: dict[str, Callable[..., Scene]] = {
-        "clouds": cloud, "belts": belt, "scatters": scatter, "trusses": truss, "gates": gate,
-    }  # fmt: skip
-    for name, make in makers.items():
-        for place, table in enumerate(getattr(file, name)):
-            given = table.model_dump()
-            if "spared" in given:
-                given["spared"] = [(end, table.spared) for end in ends]
-            with _in_table(f"{name}.{place}"):
-                scene += make(**given)
+    for k, obstacle in enumerate(file.obstacles):
+        with _in_table(f"obstacles.{k}"):
+            scene += obstacle.scene(folder)
+    for name in GENERATORS:
+        for k, table in enumerate(getattr(file, name)):
+            with _in_table(f"{name}.{k}"):
+                scene += table.scene(ends)
     return scene
-
-
-def _obstacle(where: str, table: ObstacleTable, folder: Path) -> Scene:
-    given = table.model_dump(exclude_none=True)
-    kinds = [name for name in OBSTACLES if name in given]
-    kind = "center" if not kinds and "radius" in given else kinds[0] if len(kinds) == 1 else None
-    if kind is None:
-        raise InvalidInput(where, ", ".join(given) or "no key", f"one of {', '.join(OBSTACLES)}")
-    for name in (kind, *OBSTACLES[kind]):
-        if name not in given:
-            raise InvalidInput(f"{where}.{name}", None, "this key is required")
-    known = [kind, *OBSTACLES[kind], *(OF_A_MESH if kind == "mesh" else ())]
-    for name in given:
-        if name not in known:
-            raise InvalidInput(f"{where}.{name}", given[name], f"not beside {kind}")
-    if kind == "center":
-        return Scene([given["center"]], [number(f"{where}.radius", given["radius"], above=0.0)])
-    path = folder / given.pop(kind)
-    with _in_table(where):
-        if kind == "mesh":
-            return Scene.from_mesh(path, **given)
-        return Scene.from_csv(path) if kind == "csv" else Scene.from_numpy(path)
-
-
-def _posture_axis(place: int, table: PostureTable) -> PostureAxis:
-    given = table.model_dump(exclude_none=True)
-    if set(given) == {"towards", "levels"}:
-        return PostureAxis.towards(given["towards"], given["levels"])
-    if set(given) == {"joints", "half_count", "spacing"}:
-        return PostureAxis(**given)
-    raise InvalidInput(
-        f"lattice.postures.{place}",
-        ", ".join(given) or "nothing",
-        "either towards and levels, or joints, half_count and spacing",
-    )
 
 
 @contextmanager
 def _in_table(name: str) -> Iterator[None]:
-    """Say in which table of the file a value stands."""
+    """Name the table of the file in errors."""
     try:
         yield
     except InvalidInput as error:
         raise InvalidInput(f"{name}: {error.what}", error.value, error.allowed) from None
-
-
-def _explain(what: str, error: Any) -> InvalidInput:  # noqa: ANN401 - pydantic's error record
-    """A pydantic error in our words, with the nearest key for a misspelt one."""
-    place = [str(step) for step in error["loc"]]
-    where = f"{what}: {'.'.join(place)}"
-    if error["type"] == "extra_forbidden":
-        return unknown_name(f"{what}: unknown key", ".".join(place), _keys_beside(place))
-    if error["type"] == "missing":
-        return InvalidInput(where, None, "this key is required")
-    return InvalidInput(where, error["input"], error["msg"])
-
-
-def _keys_beside(place: list[str]) -> list[str]:
-    """Full names of the keys allowed in the table that `place` lies in."""
-    table: type[BaseModel] = ScenarioFile
-    for step in place[:-1]:
-        if step.isdigit():
-            continue
-        annotation = table.model_fields[step].annotation
-        inner = [annotation, *getattr(annotation, "__args__", ())]
-        table = next(t for t in inner if isinstance(t, type) and issubclass(t, BaseModel))
-    return [".".join([*place[:-1], key]) for key in table.model_fields]

@@ -1,250 +1,259 @@
-"""The tables of a scenario file as a pydantic schema: keys, types and defaults."""
+"""Tables of a scenario file as settings classes: keys, types, ranges and defaults."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
-from typing import Annotated, Any
+from dataclasses import field
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, JsonValue
+import numpy as np
+from pydantic import TypeAdapter
 
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.checks import FARTHEST, one_of
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.rules import NamedNumbers, Numbers, OneOf, Text, WholeNumber
+from ffsr_plan.core.settings import part_of, setting, settings
 from ffsr_plan.dynamics.mode import Mode
-from ffsr_plan.plans.planners import PLANNERS
+from ffsr_plan.problem.end_effector_goal import inverse_kinematics
+from ffsr_plan.problem.lattice_settings import Lattice
+from ffsr_plan.problem.problem import ModeName, Problem
 from ffsr_plan.robots.collision_shapes import CONTAINERS
-from ffsr_plan.search.ants.max_min import MaxMinAntSystem
+from ffsr_plan.robots.robot import SpaceRobot, load_robot
+from ffsr_plan.scenario_files.obstacle_tables import (
+    BeltTable,
+    CloudTable,
+    FilePath,
+    GateTable,
+    Obstacle,
+    ScatterTable,
+    TrussTable,
+)
+from ffsr_plan.scenario_files.planner_tables import ByPlannerName, PlannerTable
+from ffsr_plan.scene.scene import Scene
 
-Number = Annotated[float, Field(allow_inf_nan=False)]
-Triple = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Position = Annotated[Array, Numbers(3, at_most=FARTHEST)]
+Angles = Annotated[Array, Numbers(3)]
+JointValues = Annotated[dict[str, float], NamedNumbers()]
+Container = Annotated[str, OneOf(tuple(CONTAINERS))]
+_ORIGIN = (0.0, 0.0, 0.0)
 
 
-Pair = Annotated[list[Number], Field(min_length=2, max_length=2)]
+@settings
+class RobotTable:
+    """The table `[robot]`.
+
+    Attributes:
+        urdf: name of a bundled robot, or a path relative to the scenario file.
+        mode: what actuates the base.
+        package_dirs: directories of ROS packages, relative to the scenario file.
+        srdf: path of an SRDF, relative to the scenario file.
+        meshes: what replaces collision meshes.
+        cylinders: what replaces collision cylinders.
+    """
+
+    urdf: Annotated[str, Text("a name or a path", empty=False)]
+    mode: Annotated[Mode, ModeName()] = Mode.FREE_FLYING
+    package_dirs: tuple[FilePath, ...] = ()
+    srdf: FilePath | None = None
+    meshes: Container = "hull"
+    cylinders: Container = "hull"
+
+    def robot(self, folder: Path) -> SpaceRobot:
+        """The robot; paths are relative to `folder`."""
+        return load_robot(
+            folder / self.urdf if self.urdf.endswith(".urdf") else self.urdf,
+            [folder / entry for entry in self.package_dirs],
+            srdf=None if self.srdf is None else folder / self.srdf,
+            meshes=self.meshes,
+            cylinders=self.cylinders,
+        )
 
 
-class Table(BaseModel):
-    """What all tables share: no key beyond those listed, no conversion between types."""
+@settings(eq=False)
+class StartTable:
+    """The table `[start]`.
 
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, strict=True, use_attribute_docstrings=True
+    Attributes:
+        position: (3,) base origin in the world [m].
+        attitude: (3,) ZYX angles alpha, beta, gamma [rad].
+        posture: name of a posture of the robot, whose joint values are taken.
+        joints: joint values by name [rad or m], in place of those of the posture; joints that
+            neither names are at zero.
+    """
+
+    position: Position = setting(default=_ORIGIN)
+    attitude: Angles = setting(default=_ORIGIN)
+    posture: Annotated[str, Text("the name of a posture")] | None = None
+    joints: JointValues = field(default_factory=dict)
+
+    def configuration(self, robot: SpaceRobot) -> Array:
+        """(nq,) start configuration."""
+        joints = joint_values(robot, self.posture, self.joints)
+        return robot.configuration(self.position, self.attitude, joints)
+
+
+@settings(eq=False)
+class EndEffectorTable:
+    """The table `end_effector` of `[goal]`.
+
+    Attributes:
+        frame: name of a link, joint or other frame of the robot.
+        position: (3,) wanted for the frame's origin, world [m].
+        attitude: (3,) ZYX angles wanted for the frame [rad]; any attitude is accepted without it.
+        seed: of the random numbers of inverse kinematics.
+    """
+
+    frame: Annotated[str, Text("the name of a frame")]
+    position: Position
+    attitude: Angles | None = None
+    seed: Annotated[int, WholeNumber()] = 0
+
+
+@settings(eq=False)
+class GoalTable:
+    """The table `[goal]`.
+
+    Attributes:
+        position: (3,) base origin in the world [m], zero without it; not allowed in the mode
+            free-floating.
+        attitude: (3,) ZYX angles of the base [rad]. In a mode whose attitude reacts, the arms have
+            to bring the base to it.
+        posture: name of a posture of the robot, whose joint values are taken.
+        joints: joint values by name [rad or m], in place of those of the posture; joints that
+            neither names are at zero.
+        end_effector: pose of a frame, from which the joint values follow by inverse kinematics.
+    """
+
+    position: Position | None = None
+    attitude: Angles | None = None
+    posture: Annotated[str, Text("the name of a posture")] | None = None
+    joints: JointValues = field(default_factory=dict)
+    end_effector: EndEffectorTable | None = None
+
+    def __post_init__(self) -> None:
+        if self.end_effector is not None:
+            for key in ("joints", "posture"):
+                value = getattr(self, key)
+                if value:
+                    raise InvalidInput(key, value, "none beside end_effector: they follow from it")
+
+    @property
+    def base_position(self) -> Array:
+        """(3,) prescribed base origin [m]."""
+        return np.zeros(3) if self.position is None else self.position
+
+    @property
+    def base_attitude(self) -> Array:
+        """(3,) prescribed ZYX angles of the base [rad]."""
+        return np.zeros(3) if self.attitude is None else self.attitude
+
+    def configuration(self, robot: SpaceRobot, scene: Scene, start: Array, mode: Mode) -> Array:
+        """(nq,) goal configuration, by inverse kinematics where a pose is given.
+
+        Args:
+            robot: the robot.
+            scene: obstacles, for inverse kinematics.
+            start: (nq,) start configuration.
+            mode: what actuates the base.
+
+        Raises:
+            InvalidInput: a joint, posture or frame that the robot does not have.
+            PoseOutOfReach, GoalInCollision: see `inverse_kinematics`.
+        """
+        wanted = self.end_effector
+        if wanted is None:
+            joints = joint_values(robot, self.posture, self.joints)
+            return robot.configuration(self.base_position, self.base_attitude, joints)
+        try:
+            return inverse_kinematics(
+                robot,
+                scene,
+                wanted.frame,
+                wanted.position,
+                wanted.attitude,
+                start=start,
+                mode=mode,
+                base_position=self.base_position if mode.has_thrusters else None,
+                base_attitude=self.base_attitude if mode.has_wheels else None,
+                seed=wanted.seed,
+            )
+        except InvalidInput as error:
+            raise InvalidInput(f"end_effector.{error.what}", error.value, error.allowed) from None
+
+
+if TYPE_CHECKING:
+    ObjectiveTable = Any
+else:
+    ObjectiveTable = part_of(
+        Problem,
+        "ObjectiveTable",
+        "The table `[objective]`.",
+        ("delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight"),
     )
 
 
-def _one_of(names: Iterable[str]) -> Any:  # noqa: ANN401 - what pydantic takes
-    """Names for the exported schema; `inputs.one_of` checks them, with a suggestion."""
-    return Field(json_schema_extra={"enum": list(names)})
+@settings(eq=False)
+class ScenarioFile:
+    """A scenario file.
 
+    Attributes:
+        title: of the scenario.
+        robot: the robot and the mode.
+        start: the start configuration.
+        goal: the goal configuration, or the pose of an end effector.
+        obstacles: spheres, files of spheres and meshes.
+        clouds: random spheres in a box.
+        belts: random spheres in a ring.
+        scatters: a few random spheres in the xy-plane.
+        trusses: booms of struts.
+        gates: pairs of spheres.
+        lattice: layers and axes.
+        objective: weights of length and clearance.
+        planner: the planner, its settings and seed.
+    """
 
-OBSTACLES = {"center": ["radius"], "csv": [], "numpy": [], "mesh": ["excess"]}
-"""What an obstacle is made from, and what has to be given as well."""
-OF_A_MESH = ("scale", "position", "attitude", "inside")
-_NEEDED_KEYS: list[JsonValue] = [{"required": [first, *rest]} for first, rest in OBSTACLES.items()]
-
-
-class RobotTable(Table):
-    """The table `[robot]`."""
-
-    urdf: str
-    """Name of a bundled robot, or a path relative to the scenario file."""
-    mode: Annotated[str, _one_of([mode.value for mode in Mode])] = "free-flying"
-    """What moves the base."""
-    package_dirs: list[str] = []
-    srdf: str | None = None
-    """Path of an SRDF, relative to the scenario file."""
-    meshes: Annotated[str, _one_of(CONTAINERS)] = "hull"
-    cylinders: Annotated[str, _one_of(CONTAINERS)] = "hull"
-
-
-class PoseTable(Table):
-    """The table `[start]`."""
-
-    position: Triple = [0.0, 0.0, 0.0]
-    attitude: Triple = [0.0, 0.0, 0.0]
-    """ZYX angles alpha, beta, gamma [rad]."""
-    joints: dict[str, Number] = {}
-    """Joints that are not named are at zero."""
-
-
-class EndEffectorTable(Table):
-    """The table `end_effector` of `[goal]`."""
-
-    frame: str
-    """Name of a link, joint or other frame of the robot."""
-    position: Triple
-    """Of the frame's origin, world [m]."""
-    attitude: Triple | None = None
-    """ZYX angles of the frame [rad]; any will do if not given."""
-    seed: int = 0
-
-
-class GoalTable(Table):
-    """The table `[goal]`."""
-
-    position: Triple | None = None
-    """At the world's origin if not given; not to be given in the mode free-floating."""
-    attitude: Triple | None = None
-    joints: dict[str, Number] = {}
-    end_effector: EndEffectorTable | None = None
-    """Instead of joints: they follow by inverse kinematics."""
-
-
-class ObstacleTable(Table):
-    """The table `[[obstacles]]`: a sphere (`center`, `radius`), a file of spheres or a mesh."""
-
-    model_config = ConfigDict(json_schema_extra={"oneOf": _NEEDED_KEYS})
-
-    center: Triple | None = None
-    radius: Number | None = None
-    csv: str | None = None
-    """A table of x, y, z and radius; like all paths relative to the scenario file."""
-    numpy: str | None = None
-    """A .npy file, (N, 4), or a .npz file with centers and radii."""
-    mesh: str | None = None
-    """A .stl, .obj, .dae or .ply file; `excess` has to be given."""
-    excess: Number | None = None
-    """How far spheres may reach beyond the mesh [m]."""
-    scale: Number | None = None
-    position: Triple | None = None
-    attitude: Triple | None = None
-    inside: bool | None = None
-    """False to cover the surface of the mesh alone."""
-
-
-class CloudTable(Table):
-    """The table `[[clouds]]`: spheres drawn from a seed."""
-
-    seed: int
-    count: int
-    low: Triple
-    high: Triple
-    radii: Pair
-    spared: Number = 0.0
-    """No sphere comes nearer than this to the base at start or goal [m]."""
-
-
-class BeltTable(Table):
-    """The table `[[belts]]`: debris in a ring, drawn from a seed; see `generators.belt`."""
-
-    seed: int
-    count: int
-    radius: Number
-    thickness: Number
-    radii: Pair
-    center: Triple = [0.0, 0.0, 0.0]
-    attitude: Triple = [0.0, 0.0, 0.0]
-    arc: Pair = [0.0, 2.0 * math.pi]
-    spared: Number = 0.0
-    """No sphere comes nearer than this to the base at start or goal [m]."""
-
-
-class ScatterTable(Table):
-    """The table `[[scatters]]`: a few spheres in the xy-plane; see `generators.scatter`."""
-
-    seed: int
-    counts: Annotated[list[int], Field(min_length=2, max_length=2)]
-    low: Pair
-    high: Pair
-    radii: Pair
-
-
-class TrussTable(Table):
-    """The table `[[trusses]]`: a boom of struts; see `generators.truss`."""
-
-    begin: Triple
-    end: Triple
-    width: Number
-    bays: int
-    radius: Number
-    roll: Number = 0.0
-
-
-class GateTable(Table):
-    """The table `[[gates]]`: two spheres with a gap between them; see `generators.gate`."""
-
-    along: Number
-    aside: Number
-    opening: Number
-    radius: Number
-
-
-class AxisTable(Table):
-    """The tables `lateral` and `normal`."""
-
-    half_count: int
-    spacing: Number
-
-
-class PostureTable(Table):
-    """An entry of `postures`: `towards` and `levels`, or `joints`, `half_count` and `spacing`."""
-
-    towards: str | None = None
-    levels: int | None = None
-    joints: dict[str, Number] | None = None
-    half_count: int | None = None
-    spacing: Number | None = None
-
-
-class LatticeTable(Table):
-    """The table `[lattice]`."""
-
-    divisions: int = 40
-    lateral: AxisTable | None = None
-    normal: AxisTable | None = None
-    postures: list[PostureTable] = []
-
-
-class ObjectiveTable(Table):
-    """The table `[objective]`."""
-
-    delta: Number = 0.0
-    length_unit: Number = 1.0
-    clearance_cap: Number | None = None
-    position_weight: Number = 1.0
-    rotation_weight: Number = 1.0
-
-
-class PlannerTable(Table):
-    """The table `[planner]`: what is not given stays at the planner's default."""
-
-    name: Annotated[str, _one_of(PLANNERS)] = MaxMinAntSystem.name
-    seed: int = 0
-    refine: bool = True
-    ants: int | None = None
-    cycles: int | None = None
-    alpha: Number | None = None
-    beta: Number | None = None
-    rho: Number | None = None
-    Q: Number | None = None
-    C: Number | None = None
-    improved: int | None = None
-    patience: int | None = None
-    cost_aware: bool | None = None
-    pheromone: bool | None = None
-
-
-class ScenarioFile(Table):
-    """A whole scenario file."""
-
-    title: str = ""
     robot: RobotTable
-    start: PoseTable = PoseTable()
     goal: GoalTable
-    obstacles: list[ObstacleTable] = []
-    clouds: list[CloudTable] = []
-    belts: list[BeltTable] = []
-    scatters: list[ScatterTable] = []
-    trusses: list[TrussTable] = []
-    gates: list[GateTable] = []
-    lattice: LatticeTable
-    objective: ObjectiveTable = ObjectiveTable()
-    planner: PlannerTable = PlannerTable()
+    lattice: Lattice
+    title: Annotated[str, Text()] = ""
+    start: StartTable = field(default_factory=StartTable)
+    obstacles: tuple[Obstacle, ...] = ()
+    clouds: tuple[CloudTable, ...] = ()
+    belts: tuple[BeltTable, ...] = ()
+    scatters: tuple[ScatterTable, ...] = ()
+    trusses: tuple[TrussTable, ...] = ()
+    gates: tuple[GateTable, ...] = ()
+    objective: ObjectiveTable = field(default_factory=ObjectiveTable)
+    planner: Annotated[PlannerTable, ByPlannerName()] = field(default_factory=PlannerTable)
+
+
+def joint_values(
+    robot: SpaceRobot, posture: str | None, joints: dict[str, float]
+) -> dict[str, float]:
+    """Joint values of a posture, if one is named, and those given in their place.
+
+    Args:
+        robot: gives the postures.
+        posture: name of a posture, or None.
+        joints: values by joint name [rad or m].
+
+    Raises:
+        InvalidInput: an unknown posture; the nearest name is suggested.
+    """
+    if posture is None:
+        return joints
+    return {**robot.postures[one_of("posture", posture, list(robot.postures))], **joints}
 
 
 def schema() -> dict[str, Any]:
     """The JSON Schema of scenario files, by which editors complete and check them.
 
-    It knows tables, keys, types and names; numbers and combinations are checked by `read_scenario`.
+    It holds tables, keys, types, names and ranges; whether they fit together and to the robot is
+    checked by `Scenario.load`.
     """
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **ScenarioFile.model_json_schema(),
+        **TypeAdapter(ScenarioFile).json_schema(),
         "title": "ffsr-plan scenario",
     }

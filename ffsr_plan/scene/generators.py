@@ -1,4 +1,7 @@
-"""Scenes by a few numbers: the same arguments, seed included, give the same spheres everywhere."""
+"""Seeded generators of scenes.
+
+The same arguments, the seed included, give the same spheres on every machine.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +14,11 @@ from numpy.typing import ArrayLike
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, whole_number
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.rotations import from_angles, rotate
+from ffsr_plan.core.rotations import from_angles, level_direction, rotate
 from ffsr_plan.scene.scene import Scene
 
 Spared = Sequence[tuple[ArrayLike, float]]
-_MOST = 1_000_000  # spheres
+_MOST_SPHERES = 1_000_000
 _ATTEMPTS = 200
 
 
@@ -30,16 +33,16 @@ def cloud(
     """A cloud of debris: centres uniform in a box, radii uniform on a logarithmic scale.
 
     Args:
-        seed: a whole number >= 0.
-        count: number of spheres; none make an empty scene.
+        seed: an integer >= 0.
+        count: number of spheres; 0 for an empty scene.
         low: (3,) least coordinates of the centres [m].
         high: (3,) greatest coordinates of the centres [m].
         radii: (2,) least and greatest radius [m].
-        spared: balls (centre [m], radius [m]) that no sphere reaches into, such as the places where
-            the robot starts and ends; a sphere that would is drawn again.
+        spared: balls (centre [m], radius [m]) that stay free, for example around the start and the
+            goal; a sphere that intersects one is drawn again.
 
     Raises:
-        InvalidInput: an argument that is not allowed, or no room beside what is spared.
+        InvalidInput: an argument that is not allowed, or spared balls that leave no space.
     """
     first = finite_array("cloud low", low, (3,), FARTHEST)
     last = finite_array("cloud high", high, (3,), FARTHEST)
@@ -66,23 +69,23 @@ def belt(
     """A belt of debris: centres uniform in a ring or an arc of it, radii on a logarithmic scale.
 
     Args:
-        seed: a whole number >= 0.
+        seed: an integer >= 0.
         count: number of spheres.
-        radius: of the ring's middle line, about the z axis of its own [m], > 0.
-        thickness: radius of the ring's section [m], > 0 and at most `radius`.
+        radius: major radius of the ring, about its z axis [m], > 0.
+        thickness: minor radius of the ring [m], > 0 and at most `radius`.
         radii: (2,) least and greatest radius of the spheres [m].
-        center: (3,) of the ring, world [m].
+        center: (3,) centre of the ring, world [m].
         attitude: (3,) ZYX angles of the ring's axes [rad].
-        arc: (2,) angles from the ring's x axis between which there is debris [rad].
+        arc: (2,) first and last angle of the arc from the ring's x axis [rad].
         spared: as for `cloud`.
 
     Raises:
-        InvalidInput: an argument that is not allowed, or no room beside what is spared.
+        InvalidInput: an argument that is not allowed, or spared balls that leave no space.
     """
     large = number("belt radius", radius, above=0.0, at_most=FARTHEST)
     small = number("belt thickness", thickness, above=0.0, at_most=large)
     middle = finite_array("belt center", center, (3,), FARTHEST)
-    turned = from_angles(finite_array("belt attitude", attitude, (3,)))
+    axes = from_angles(finite_array("belt attitude", attitude, (3,)))
     begin, end = finite_array("belt arc", arc, (2,)).tolist()
     if not begin < end <= begin + 2.0 * np.pi + 1e-12:
         raise InvalidInput("belt arc", [begin, end], "begin < end <= begin + 2 pi")
@@ -91,7 +94,7 @@ def belt(
         angle = rng.uniform(begin, end, more)
         out, up = np.zeros((2, more))
         left = np.arange(more)
-        while len(left):  # in a disc, more often where the way round is longer
+        while len(left):  # rejection: density in the section grows with the circumference
             x, y, share = rng.uniform(-1.0, 1.0, (3, len(left)))
             kept = (x * x + y * y <= 1.0) & (
                 0.5 * (share + 1.0) * (large + small) <= large + small * x
@@ -100,7 +103,7 @@ def belt(
             left = left[~kept]
         ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(more)], axis=1)
         lifted = up[:, None] * np.array([0.0, 0.0, 1.0])
-        return middle + rotate(turned, (large + out)[:, None] * ring + lifted)
+        return middle + rotate(axes, (large + out)[:, None] * ring + lifted)
 
     return _drawn("belt", seed, count, draw, radii, spared)
 
@@ -108,13 +111,13 @@ def belt(
 def scatter(
     seed: int, counts: Sequence[int], low: ArrayLike, high: ArrayLike, radii: ArrayLike
 ) -> Scene:
-    """A few spheres in the world's xy-plane: number, places and radii uniform.
+    """A few spheres in the world's xy-plane: number, positions and radii uniform.
 
     Args:
-        seed: a whole number >= 0.
+        seed: an integer >= 0.
         counts: (2,) least and greatest number of spheres.
         low: (2,) least x and y of the centres [m].
-        high: (2,) greatest x and y [m].
+        high: (2,) greatest x and y of the centres [m].
         radii: (2,) least and greatest radius [m].
 
     Raises:
@@ -124,7 +127,7 @@ def scatter(
     if not isinstance(counts, Sequence) or len(counts) != 2:
         raise InvalidInput("scatter counts", counts, "the least and the greatest number")
     fewest = whole_number("scatter counts", counts[0], at_least=0)
-    most = whole_number("scatter counts", counts[1], at_least=fewest, at_most=_MOST)
+    most = whole_number("scatter counts", counts[1], at_least=fewest, at_most=_MOST_SPHERES)
     first = finite_array("scatter low", low, (2,), FARTHEST)
     last = finite_array("scatter high", high, (2,), FARTHEST)
     if not np.all(first < last):
@@ -140,17 +143,17 @@ def truss(
 ) -> Scene:
     """A boom of four longerons, with a square of battens between bays and a diagonal on each side.
 
-    Spheres follow each other along the struts at no more than their radius, so that struts as thick
-    as 0.86 `radius` lie in them.
+    The distance between neighbouring spheres on a strut is at most their radius, so that they
+    contain a cylinder about the strut of radius 0.86 `radius`.
 
     Args:
-        begin: (3,) middle of the first square, world [m].
-        end: (3,) middle of the last one [m].
-        width: edge of the squares [m], > 0.
-        bays: how many there are, >= 1.
-        radius: of the spheres [m], > 0 and at most `width` / 2.
-        roll: turn about the boom [rad]; at 0 two of the squares' edges lie level, or along the
-            world's x where the boom is upright.
+        begin: (3,) centre of the first square, world [m].
+        end: (3,) centre of the last square, world [m].
+        width: side of the squares [m], > 0.
+        bays: number of bays, >= 1.
+        radius: radius of the spheres [m], > 0 and at most `width` / 2.
+        roll: rotation about the boom [rad]; at 0, two sides of the squares are horizontal, or along
+            the world's x if the boom is vertical.
 
     Raises:
         InvalidInput: an argument that is not allowed.
@@ -164,9 +167,7 @@ def truss(
     count = whole_number("truss bays", bays, at_least=1, at_most=10_000)
     size = number("truss radius", radius, above=0.0, at_most=0.5 * edge)
     along = (last - first) / length
-    level = np.array([-along[1], along[0], 0.0])
-    across = float(np.linalg.norm(level))
-    level = level / across if across > 1e-9 else np.array([1.0, 0.0, 0.0])
+    level = level_direction(along)
     upward = np.cross(along, level)
     angle = number("truss roll", roll)
     sides = np.cos(angle) * level + np.sin(angle) * upward
@@ -179,8 +180,9 @@ def truss(
         struts.append((joints[k, i], joints[k + 1, i]))
         struts.append((joints[k, i], joints[k + 1, i - 1]))
     total = sum(np.linalg.norm(tip - tail) for tail, tip in struts)
-    if total / size > _MOST:
-        allowed = f"{total / _MOST:.3g} m or more, for at most {_MOST} spheres along {total:.4g} m"
+    if total / size > _MOST_SPHERES:
+        least = total / _MOST_SPHERES
+        allowed = f"{least:.3g} m or more, for at most {_MOST_SPHERES} spheres along {total:.4g} m"
         raise InvalidInput("truss radius", radius, allowed)
     centers = [joints.reshape(-1, 3)]
     for tail, tip in struts:
@@ -191,13 +193,16 @@ def truss(
 
 
 def gate(along: float, aside: float, opening: float, radius: float) -> Scene:
-    """Two spheres in the world's xy-plane that leave a gap for who travels along x.
+    """Two spheres in the world's xy-plane with a gap for motion along x.
 
     Args:
         along: x of both centres [m].
-        aside: y of the middle of the gap [m].
-        opening: width of the gap [m], greater than 0.
-        radius: of the spheres [m], greater than 0.
+        aside: y of the centre of the gap [m].
+        opening: width of the gap [m], > 0.
+        radius: radius of the spheres [m], > 0.
+
+    Raises:
+        InvalidInput: an argument that is not allowed.
     """
     x, y = number("gate along", along), number("gate aside", aside)
     half = 0.5 * number("gate opening", opening, above=0.0)
@@ -213,30 +218,30 @@ def _drawn(
     radii: ArrayLike,
     spared: Spared,
 ) -> Scene:
-    """As many spheres as asked for, drawn again where they reach into what is spared."""
+    """A scene of `count` spheres; a sphere that intersects a spared ball is drawn again."""
     rng = np.random.default_rng(whole_number(f"{what} seed", seed, at_least=0))
-    count = whole_number(f"{what} count", count, at_least=0, at_most=_MOST)
+    count = whole_number(f"{what} count", count, at_least=0, at_most=_MOST_SPHERES)
     small, large = _radii(what, radii)
     balls = [
         (
             finite_array(f"{what} spared", center, (3,)),
-            number(f"{what} spared", room, at_least=0.0),
+            number(f"{what} spared", ball_radius, at_least=0.0),
         )
-        for center, room in spared
+        for center, ball_radius in spared
     ]
     centers, sizes = np.zeros((0, 3)), np.zeros(0)
     for _ in range(_ATTEMPTS):
         more = count - len(sizes)
         drawn = draw(rng, more)
         radius = np.exp(rng.uniform(np.log(small), np.log(large), more))
-        apart = np.ones(more, dtype=bool)
-        for center, room in balls:
-            apart &= np.linalg.norm(drawn - center, axis=1) > room + radius
-        centers, sizes = np.vstack([centers, drawn[apart]]), np.append(sizes, radius[apart])
+        outside = np.ones(more, dtype=bool)
+        for center, ball_radius in balls:
+            outside &= np.linalg.norm(drawn - center, axis=1) > ball_radius + radius
+        centers, sizes = np.vstack([centers, drawn[outside]]), np.append(sizes, radius[outside])
         if len(sizes) == count:
             return Scene(centers, sizes)
-    kept = "; ".join(f"{room:g} m about ({x:g}, {y:g}, {z:g})" for (x, y, z), room in balls)
-    raise InvalidInput(f"{what} spared", kept, f"balls that leave room for the {what}")
+    text = "; ".join(f"{r:g} m about ({x:g}, {y:g}, {z:g})" for (x, y, z), r in balls)
+    raise InvalidInput(f"{what} spared", text, f"balls that leave room for the {what}")
 
 
 def _radii(what: str, radii: ArrayLike) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""`Scene`: the obstacles, spheres at rest in the world."""
+"""Obstacles: spheres at rest in the world."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, truth
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.meshes import mesh_files
 from ffsr_plan.meshes.sphere_cover import cover
 from ffsr_plan.scene import sphere_files
@@ -27,8 +28,8 @@ class Scene:
     Attributes:
         centers: (N, 3) centres in the world [m].
         radii: (N,) radii [m], greater than zero.
-        excess: how far at most the spheres reach beyond the bodies that they stand for [m]; zero
-            where they are the obstacles themselves.
+        excess: greatest distance by which the spheres protrude from the bodies that they cover [m];
+            zero if the spheres are the obstacles themselves.
     """
 
     centers: Array
@@ -36,12 +37,17 @@ class Scene:
     excess: float = 0.0
 
     def __init__(self, centers: ArrayLike = (), radii: ArrayLike = (), excess: float = 0.0) -> None:
-        """Check and freeze the obstacles; N = 0 is an empty scene.
+        """Check the obstacles and make them read-only; N = 0 is an empty scene.
+
+        Args:
+            centers: (N, 3) centres in the world [m].
+            radii: (N,) radii [m].
+            excess: see the class.
 
         Raises:
             InvalidInput: shapes that do not fit, not finite, or a radius <= 0, with its index.
         """
-        if np.size(centers) == 0:  # so that [] will do for "no obstacle"
+        if np.size(centers) == 0:  # accept [] for "no obstacle"
             centers = np.zeros((0, 3))
         c = finite_array("scene centers", centers, (-1, 3), FARTHEST)
         r = finite_array("scene radii", radii, (-1,))
@@ -57,28 +63,34 @@ class Scene:
 
     @classmethod
     def from_csv(cls, path: str | Path) -> Scene:
-        """The spheres of a comma-separated table with the columns x, y, z and radius.
+        """Read spheres from a comma-separated table with the columns x, y, z and radius.
 
-        A header such as `x [mm]` gives a unit (m, cm, mm, km); without one it is the metre.
+        Args:
+            path: the file. A header such as `x [mm]` gives a unit (m, cm, mm, km); the default is
+                the metre.
 
         Raises:
-            InvalidInput: naming file, line, column and value.
+            InvalidInput: names file, line, column and value.
         """
         return cls(*sphere_files.read_csv(path))
 
     @classmethod
     def from_numpy(cls, path: str | Path) -> Scene:
-        """The spheres of a `.npy` file, (N, 4), or of a `.npz` file with `centers` and `radii`.
+        """Read spheres from a NumPy file [m].
+
+        Args:
+            path: a `.npy` file with an array (N, 4) of x, y, z, radius, or a `.npz` file with the
+                arrays `centers` (N, 3) and `radii` (N,).
 
         Raises:
-            InvalidInput: naming the file, what it holds and what is allowed.
+            InvalidInput: names the file, its content and what is allowed.
         """
         return cls(*sphere_files.read_numpy(path))
 
     @classmethod
     def from_mesh(
         cls,
-        mesh: str | Path | Any,  # noqa: ANN401 - a trimesh object, which mypy knows nothing of
+        mesh: str | Path | Any,  # noqa: ANN401 - any object with `triangles`
         excess: float,
         *,
         scale: float = 1.0,
@@ -86,43 +98,49 @@ class Scene:
         attitude: ArrayLike = (0.0, 0.0, 0.0),
         inside: bool = True,
     ) -> Scene:
-        """Spheres around a closed mesh: its surface and all that it encloses lie in them.
+        """Spheres that cover the surface of a closed mesh and the volume that it encloses.
 
-        A hollow that has a wall of its own and does not reach the outside stays free. How it is
-        done, and why it holds, is said in `mesh_cover`. Half the excess needs four times the
-        spheres, or a little more.
+        A cavity inside the mesh, bounded by its own closed surface, stays free. `sphere_cover`
+        contains the proof. Half the excess needs about four times the spheres.
 
         Args:
             mesh: path of a .stl, .obj, .dae or .ply file, or an object with `triangles`
                 (k, 3, 3), such as a `trimesh.Trimesh`.
-            excess: how far the spheres may reach beyond what the mesh encloses, world [m], > 0.
-            scale: metres in a unit of length of the mesh, > 0; the unit that a .dae names is
+            excess: greatest distance by which the spheres may protrude from the enclosed volume,
+                world [m], > 0.
+            scale: metres per unit of length of the mesh, > 0; the unit that a .dae file names is
                 applied before it.
-            position: (3,) of the mesh's origin, world [m].
+            position: (3,) origin of the mesh in the world [m].
             attitude: (3,) ZYX angles of the mesh's axes [rad].
-            inside: False to cover the surface alone. That is all there is to an open mesh, which is
-                refused otherwise; inside a closed one a robot would then count as free.
+            inside: whether to cover the enclosed volume too. An open mesh needs False; with False,
+                a robot inside a closed mesh counts as free.
+
+        Returns:
+            The scene; its `excess` is the argument.
 
         Raises:
-            InvalidInput: a mesh that cannot be read, is not closed or too large for the excess.
+            InvalidInput: a mesh that cannot be read, is not closed, or is too large for the excess.
         """
         if isinstance(mesh, (str, Path)):
-            given = mesh_files.surface(str(Path(mesh).absolute()), [], "mesh")
+            corners = mesh_files.surface(str(Path(mesh).absolute()), [], "mesh")
         elif hasattr(mesh, "triangles"):
-            given = finite_array("mesh, triangles", mesh.triangles, (-1, 3, 3))
+            corners = finite_array("mesh, triangles", mesh.triangles, (-1, 3, 3))
         else:
             raise InvalidInput("mesh", mesh, "a path, or an object with triangles")
-        if len(given) == 0:
+        if len(corners) == 0:
             raise InvalidInput("mesh", "no triangle", "a mesh with triangles")
-        turned = rotations.from_angles(finite_array("attitude", attitude, (3,)))
-        triangles = number("scale", scale, above=0.0) * given @ rotations.matrix(turned).T
+        axes = rotations.matrix(rotations.from_angles(finite_array("attitude", attitude, (3,))))
+        triangles = number("scale", scale, above=0.0) * corners @ axes.T
         triangles = triangles + finite_array("position", position, (3,), FARTHEST)
-        reach = number("mesh, excess", excess, above=0.0)
-        found = cover(triangles, reach, truth("inside", inside))
-        return cls(*found, excess=reach)
+        excess = number("mesh, excess", excess, above=0.0)
+        spheres = cover(triangles, excess, truth("inside", inside))
+        return cls(spheres.centers, spheres.radii, excess)
 
     def to_csv(self, path: str | Path) -> None:
-        """Write a table that `from_csv` reads again bit for bit; `excess` is not kept.
+        """Write a table that `from_csv` reads again bit for bit; `excess` is not written.
+
+        Args:
+            path: the file, replaced if it exists.
 
         Raises:
             InvalidInput: a path that cannot be written.
@@ -131,7 +149,7 @@ class Scene:
 
     @cached_property
     def tree(self) -> SphereTree:
-        """The spheres as a tree, built when it is first needed."""
+        """The spheres as a tree, built at the first use."""
         return sphere_tree(self.centers, self.radii)
 
     def __add__(self, other: Scene) -> Scene:
@@ -142,6 +160,22 @@ class Scene:
             np.concatenate([self.radii, other.radii]),
             max(self.excess, other.excess),
         )
+
+    def __repr__(self) -> str:
+        extent = f", {self._extent()}" if len(self) else ""
+        return f"Scene({counted(len(self), 'sphere')}{extent})"
+
+    def _repr_html_(self) -> str:
+        rows = {"spheres": str(len(self)), "extent": self._extent() if len(self) else "empty"}
+        if self.excess:
+            rows["excess"] = f"{self.excess:g} m"
+        return html_table("Scene", rows)
+
+    def _extent(self) -> str:
+        low = (self.centers - self.radii[:, None]).min(axis=0)
+        high = (self.centers + self.radii[:, None]).max(axis=0)
+        sides = zip("xyz", low, high, strict=True)
+        return ", ".join(f"{axis} {a:.4g} to {b:.4g} m" for axis, a, b in sides)
 
     def __len__(self) -> int:
         return len(self.radii)

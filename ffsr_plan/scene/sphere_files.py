@@ -1,4 +1,8 @@
-"""Spheres in files: tables of x, y, z, radius as CSV, and NumPy arrays."""
+"""Files of spheres: CSV tables of x, y, z, radius, and NumPy arrays.
+
+CSV is parsed here rather than by `numpy.loadtxt`, because that function knows no units in a header
+and does not name the line and column of a wrong value.
+"""
 
 from __future__ import annotations
 
@@ -11,28 +15,32 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.text_files import read_text, write_text
 
 COLUMNS = ("x", "y", "z", "radius")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3}
-"""Metres in each unit that a header may name."""
+"""Metres in each unit that a header may contain."""
 _HEADER = re.compile(r"\s*(\w+)\s*(?:\[\s*(\w+)\s*\])?\s*")
 
 
 def read_csv(path: str | Path) -> tuple[Array, Array]:
-    """Centres (N, 3) and radii (N,) [m] of a comma-separated table.
+    """Read a comma-separated table of spheres.
 
-    The first line names the columns x, y, z and radius, in any order, each with its unit if that is
-    not the metre: `x [mm]`. Blank lines and lines that begin with # are passed over.
+    The first line names the columns x, y, z and radius, in any order, each with its unit unless it
+    is the metre: `x [mm]`. Blank lines and lines that begin with # are ignored.
+
+    Args:
+        path: the file, in UTF-8.
+
+    Returns:
+        Centres (N, 3) [m] and radii (N,) [m].
 
     Raises:
-        InvalidInput: naming file, line, column and value.
+        InvalidInput: names file, line, column and value.
     """
     what = f"CSV file '{path}'"
     _check_path(path)
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInput(what, type(error).__name__, "a readable UTF-8 file") from None
+    text = read_text(what, Path(path), "utf-8-sig")
     numbered = enumerate(csv.reader(text.splitlines()), start=1)
     rows = [(line, row) for line, row in numbered if row and not row[0].lstrip().startswith("#")]
     rows = [(line, row) for line, row in rows if any(cell.strip() for cell in row)]
@@ -54,26 +62,32 @@ def read_csv(path: str | Path) -> tuple[Array, Array]:
 def write_csv(path: str | Path, centers: Array, radii: Array) -> None:
     """Write a table in metres that `read_csv` reads again bit for bit.
 
+    Args:
+        path: the file, replaced if it exists.
+        centers: (N, 3) [m].
+        radii: (N,) [m].
+
     Raises:
         InvalidInput: a path that cannot be written.
     """
     rows = np.column_stack([centers, radii]).tolist()
     lines = [",".join(f"{name} [m]" for name in COLUMNS)]
     lines += [",".join(map(repr, row)) for row in rows]
-    try:
-        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise InvalidInput("path", str(path), f"a file to be written ({error})") from None
+    write_text("path", Path(path), "\n".join(lines) + "\n")
 
 
 def read_numpy(path: str | Path) -> tuple[Array, Array]:
-    """Centres (N, 3) and radii (N,) [m] of a `.npy` or `.npz` file.
+    """Read spheres from a NumPy file. Pickled objects are not read.
 
-    A `.npy` file holds one array (N, 4) of rows x, y, z, radius; a `.npz` file the arrays `centers`
-    and `radii`. Pickled objects are not read.
+    Args:
+        path: a `.npy` file with one array (N, 4) of rows x, y, z, radius [m], or a `.npz` file with
+            the arrays `centers` and `radii`.
+
+    Returns:
+        Centres (N, 3) [m] and radii (N,) [m].
 
     Raises:
-        InvalidInput: naming the file, what it holds and what is allowed.
+        InvalidInput: names the file, its content and what is allowed.
     """
     what = f"NumPy file '{path}'"
     _check_path(path)
@@ -81,9 +95,9 @@ def read_numpy(path: str | Path) -> tuple[Array, Array]:
     if suffix not in (".npy", ".npz"):
         raise InvalidInput(what, suffix, ".npy or .npz")
     try:
-        found = np.load(path, allow_pickle=False)
-        arrays = {"": found} if suffix == ".npy" else dict(found)
-    except Exception as error:  # whatever NumPy trips over in a file of any content
+        content = np.load(path, allow_pickle=False)
+        arrays = {"": content} if suffix == ".npy" else dict(content)
+    except Exception as error:  # NumPy raises many types for a file of arbitrary content
         raise InvalidInput(what, type(error).__name__, f"a file of numbers ({error})") from None
     kinds = {array.dtype.kind for array in arrays.values()}
     if not kinds <= set("iuf"):
@@ -105,7 +119,7 @@ def _check_path(path: object) -> None:
 
 
 def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:
-    """Where each of `COLUMNS` stands, and the metres in its unit."""
+    """Position of each of `COLUMNS` in the table, and the metres in its unit."""
     names, units = [], []
     for cell in cells:
         match = _HEADER.fullmatch(cell)

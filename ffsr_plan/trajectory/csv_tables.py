@@ -15,7 +15,7 @@ import numpy as np
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.text_files import write_whole
+from ffsr_plan.core.text_files import write_text
 from ffsr_plan.dynamics.inverse_dynamics import States
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.robot import SpaceRobot
@@ -83,7 +83,7 @@ def write_csv(path: Path, table: Table) -> None:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table)
     writer.writerows(np.column_stack(list(table.values())).tolist())
-    write_whole("table", path, text.getvalue())
+    write_text("table", path, text.getvalue())
 
 
 def _pose(robot: SpaceRobot, q: Array, joints: Array) -> Table:

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.rules import Number, Rule
+from ffsr_plan.core.settings import settings
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.trajectory.straight_runs import StraightRuns
 
 _LARGEST_LIMIT = 1e9  # with larger ones thrust and delta-v would be dominated by rounding
 PerJoint = float | Mapping[str, float] | None
 """One limit for all joints, limits by joint name, or None."""
+PositiveOrNone = Annotated[float, Number(above=0.0, at_most=_LARGEST_LIMIT)] | None
+"""A limit, or None."""
 
 
 class FlightLimits(NamedTuple):
@@ -53,66 +58,97 @@ class FlightLimits(NamedTuple):
         return x[0], x[1], x[2]
 
 
-def read_limits(
-    robot: SpaceRobot,
-    *,
-    joint_velocity: PerJoint,
-    joint_acceleration: PerJoint,
-    joint_jerk: PerJoint,
-    joint_torque: PerJoint,
-    base_velocity: float | None,
-    thruster_acceleration: float | None,
-    thruster_jerk: float | None,
-    turn_velocity: float | None,
-    turn_acceleration: float | None,
-    velocity_jump: float,
-) -> FlightLimits:
-    """Check the arguments of `Plan.timed` and collect them.
+@dataclass(frozen=True)
+class JointLimit(Rule):
+    """A number > 0 for all joints, or such numbers by joint name, or None."""
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
+        """See `Rule.check`."""
+        if value is None:
+            return None
+        if not isinstance(value, Mapping):
+            return number(what, value, above=0.0, at_most=_LARGEST_LIMIT)
+        return {
+            str(name): number(f"{what}.{name}", each, above=0.0, at_most=_LARGEST_LIMIT)
+            for name, each in value.items()
+        }
+
+
+@settings
+class LimitSettings:
+    """Limits of a flight as the user names them; None where there is no limit.
+
+    Attributes:
+        joint_acceleration: [rad/s^2 or m/s^2].
+        thruster_acceleration: of the base origin, equal to thrust / mass [m/s^2].
+        joint_velocity: [rad/s or m/s]; the URDF's for joints that are not named.
+        base_velocity: of the base origin [m/s].
+        joint_torque: [N m or N].
+        joint_jerk: [rad/s^3 or m/s^3].
+        thruster_jerk: of the base origin [m/s^3].
+        turn_velocity: of a base that wheels rotate [rad/s].
+        turn_acceleration: of a base that wheels rotate [rad/s^2].
+        velocity_jump: change of the base's velocity by one pulse [m/s].
+    """
+
+    joint_acceleration: Annotated[PerJoint, JointLimit()] = None
+    thruster_acceleration: PositiveOrNone = None
+    joint_velocity: Annotated[PerJoint, JointLimit()] = None
+    base_velocity: PositiveOrNone = None
+    joint_torque: Annotated[PerJoint, JointLimit()] = None
+    joint_jerk: Annotated[PerJoint, JointLimit()] = None
+    thruster_jerk: PositiveOrNone = None
+    turn_velocity: PositiveOrNone = None
+    turn_acceleration: PositiveOrNone = None
+    velocity_jump: Annotated[float, Number(at_least=0.0)] = 0.0
+
+    def __post_init__(self) -> None:
+        if self.velocity_jump > 0.0 and (self.joint_jerk or self.thruster_jerk):
+            raise InvalidInput(
+                "velocity_jump",
+                self.velocity_jump,
+                "0 if a jerk is limited: a jump has an infinite jerk",
+            )
+
+    def for_robot(self, robot: SpaceRobot) -> FlightLimits:
+        """The limits as arrays.
+
+        Args:
+            robot: gives the joints and the URDF's velocity limits.
+
+        Raises:
+            InvalidInput: a joint that the robot does not have.
+        """
+        none = np.full(robot.nd, np.inf)
+        stated = np.array(robot.model.upperVelocityLimit[6:])
+
+        def joints(what: str, default: Array = none) -> Array:
+            return _joint_array(robot, what, getattr(self, what), default)
+
+        return FlightLimits(
+            _row(self.base_velocity, self.turn_velocity, joints("joint_velocity", stated)),
+            _row(
+                self.thruster_acceleration,
+                self.turn_acceleration,
+                joints("joint_acceleration"),
+            ),
+            _row(self.thruster_jerk, None, joints("joint_jerk")),
+            joints("joint_torque"),
+            self.velocity_jump,
+        )
+
+
+def read_limits(robot: SpaceRobot, **given: Any) -> FlightLimits:  # noqa: ANN401 - see `LimitSettings`
+    """The limits that a user names, checked; see `LimitSettings` and `Plan.timed`.
 
     Args:
         robot: the robot.
-        joint_velocity: limits on joint velocities [rad/s or m/s]; None for those of the URDF.
-        joint_acceleration: limits on joint accelerations [rad/s^2 or m/s^2].
-        joint_jerk: limits on joint jerks [rad/s^3 or m/s^3].
-        joint_torque: limits on joint torques [N m or N].
-        base_velocity: limit on the velocity of the base origin [m/s].
-        thruster_acceleration: limit on thrust divided by mass [m/s^2].
-        thruster_jerk: limit on the jerk of the base origin [m/s^3].
-        turn_velocity: limit on the angular velocity of a base that wheels rotate [rad/s].
-        turn_acceleration: limit on its angular acceleration [rad/s^2].
-        velocity_jump: largest change of the base's velocity at a corner [m/s].
-
-    Returns:
-        The limits; infinite for None.
+        **given: fields of `LimitSettings`.
 
     Raises:
-        InvalidInput: a limit that is not a positive number, an unknown joint, or a velocity jump
-            together with a limit on jerk.
+        InvalidInput: a limit that is not allowed, or a joint that the robot does not have.
     """
-    jump = number("velocity_jump", velocity_jump, at_least=0.0)
-    none = np.full(robot.nd, np.inf)
-    stated = np.array(robot.model.upperVelocityLimit[6:])
-    jerks = _per_joint(robot, "joint_jerk", joint_jerk, none)
-    base_jerk = _one("thruster_jerk", thruster_jerk)
-    if jump > 0.0 and np.any(np.isfinite([base_jerk, *jerks])):
-        raise InvalidInput(
-            "velocity_jump", jump, "0 if a jerk is limited: a jump has an infinite jerk"
-        )
-    return FlightLimits(
-        _row(
-            _one("base_velocity", base_velocity),
-            _one("turn_velocity", turn_velocity),
-            _per_joint(robot, "joint_velocity", joint_velocity, stated),
-        ),
-        _row(
-            _one("thruster_acceleration", thruster_acceleration),
-            _one("turn_acceleration", turn_acceleration),
-            _per_joint(robot, "joint_acceleration", joint_acceleration, none),
-        ),
-        _row(base_jerk, np.inf, jerks),
-        _per_joint(robot, "joint_torque", joint_torque, none),
-        jump,
-    )
+    return LimitSettings(**given).for_robot(robot)
 
 
 def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, floats: bool) -> None:
@@ -144,24 +180,21 @@ def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, fl
             raise InvalidInput(f"joint_velocity, joint {name}", 0.0, allowed)
 
 
-def _row(base: float, turn: float, joints: Array) -> Array:
-    return np.concatenate([[base, turn], joints])
+def _row(base: float | None, rotation: float | None, joints: Array) -> Array:
+    """(2 + nd,) columns of `FlightLimits`."""
+    first = [np.inf if value is None else value for value in (base, rotation)]
+    return np.concatenate([first, joints])
 
 
-def _one(what: str, value: float | None) -> float:
-    return np.inf if value is None else number(what, value, above=0.0, at_most=_LARGEST_LIMIT)
-
-
-def _per_joint(robot: SpaceRobot, what: str, value: PerJoint, default: Array) -> Array:
+def _joint_array(robot: SpaceRobot, what: str, value: PerJoint, default: Array) -> Array:
+    """(nd,) one number for each joint."""
     if value is None:
         return default
     if not isinstance(value, Mapping):
-        return np.full(robot.nd, number(what, value, above=0.0, at_most=_LARGEST_LIMIT))
+        return np.full(robot.nd, value)
     values = np.array(default)
     for name, each in value.items():
         if name not in robot.joint_names:
             raise unknown_name(what, name, robot.joint_names)
-        values[robot.joint_names.index(name)] = number(
-            f"{what}.{name}", each, above=0.0, at_most=_LARGEST_LIMIT
-        )
+        values[robot.joint_names.index(name)] = each
     return values

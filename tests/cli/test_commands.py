@@ -74,7 +74,7 @@ def test_robots_lists_the_bundled_ones(run):
         assert word in result.stdout
 
 
-def test_no_path_is_exit_status_1_with_the_reason_on_standard_error(run, tmp_path):
+def test_no_path_is_exit_status_1_with_the_reason_on_stderr(run, tmp_path):
     wall = "\n".join(
         f"[[obstacles]]\ncenter = [2.0, {y / 2}, 0.0]\nradius = 0.4" for y in range(-4, 5)
     )
@@ -92,7 +92,7 @@ def test_a_title_with_brackets_is_shown_as_it_is(run, tmp_path):
     assert "[red]odd[/foo]" in result.stdout
 
 
-def test_an_output_that_cannot_be_written_is_refused_before_planning(run, tmp_path):
+def test_an_unwritable_output_is_refused_before_planning(run, tmp_path):
     (tmp_path / "file").write_text("")
     result = run("plan", "quick.toml", "--out", "file/inside")
     assert result.exit_code == 2
@@ -108,7 +108,7 @@ def test_every_planner_can_be_chosen_and_refinement_switched_off(run):
     assert result.exit_code == 0
 
 
-def test_the_peak_momentum_of_wheels_is_printed_where_there_are_wheels(run, tmp_path):
+def test_the_peak_momentum_of_wheels_is_printed_if_there_are_any(run, tmp_path):
     goal = "attitude = [0.6, 0.0, 0.0]"
     held = QUICK.replace("[goal]", f"mode = 'attitude-held'\n[goal]\n{goal}")
     (tmp_path / "held.toml").write_text(held)
@@ -178,13 +178,13 @@ def test_a_changed_plan_file_does_not_pass_as_verified(run, tmp_path):
     assert run("verify", path).exit_code == 2
 
 
-def test_the_version_is_said(run):
+def test_the_version_is_printed(run):
     result = run("--version")
     assert result.exit_code == 0
     assert result.stdout.startswith("ffsr-plan 0.")
 
 
-def test_where_there_are_no_obstacles_nothing_infinite_is_said_of_them(tmp_path):
+def test_nothing_infinite_is_printed_for_an_empty_scene(tmp_path):
     file = tmp_path / "empty.toml"
     file.write_text(
         "[robot]\nurdf = 'planar_dual_arm'\n[goal]\nposition = [3.0, 0.0, 0.0]\n"

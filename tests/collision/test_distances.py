@@ -1,5 +1,7 @@
 """Clearance by Coal against closed forms and against the laws of distance."""
 
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -31,7 +33,7 @@ def test_clearance_equals_the_closed_form_for_spheres_and_boxes(seed):
 
 
 @given(seeds)
-def test_moving_an_obstacle_changes_the_clearance_by_no_more(seed):
+def test_clearance_changes_by_at_most_the_obstacles_motion(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     scene = random_scene(rng, count=1, low=-2, high=2)
     q = random_configuration(robot, rng)
@@ -52,11 +54,11 @@ def test_clearance_is_the_least_over_obstacles(seed):
     ]
     assert fp.clearance(robot, scene, q) == min(each)
     near = ObstacleQuery(robot, scene).nearest(q)
-    assert near.other == int(np.argmin(each))
+    assert near.obstacle == int(np.argmin(each))
 
 
 @given(seeds)
-def test_clearance_does_not_see_where_the_world_is(seed):
+def test_clearance_is_invariant_under_translation(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     scene = random_scene(rng, low=-2, high=2)
     q = random_configuration(robot, rng)
@@ -94,4 +96,15 @@ def test_the_nearest_link_is_named(robot):
     q = robot.neutral()  # arms stretched to the sides
     near = ObstacleQuery(robot, fp.Scene([[0.12, 1.6, 0.0]], [0.2])).nearest(q)
     assert near.link == "left_link_3"
-    assert near.other == 0
+    assert near.obstacle == 0
+
+
+def test_a_clearance_is_a_float_that_shows_its_pair(robot):
+    scene = fp.Scene([[0.12, 1.6, 0.0]], [0.2])
+    near = fp.clearance(robot, scene, robot.neutral())
+    assert repr(near) == f"Clearance({float(near)} m, link 'left_link_3', obstacle 0)"
+    assert f"{near} {near:.1f}" == f"{float(near)} {float(near):.1f}"
+    assert type(near + 0.0) is float
+    again = pickle.loads(pickle.dumps(near))
+    assert (again, again.link, again.obstacle) == (near, "left_link_3", 0)
+    assert repr(fp.clearance(robot, fp.Scene(), robot.neutral())) == "Clearance(inf m, empty scene)"

@@ -104,7 +104,7 @@ def server():
         yield server
 
 
-def test_what_is_shown_is_the_page_of_the_plan(fig2a_plan):
+def test_the_server_shows_the_page_of_the_plan(fig2a_plan):
     with fig2a_plan.show(block=False, open_browser=False, title="the title") as shown:
         assert get(shown.url) == (200, page(fig2a_plan, "the title"))
 
@@ -131,7 +131,7 @@ def test_a_server_on_all_addresses_would_be_noticed():
      ["127.0.0.1", "evil.example"], ["127.0.0.1@evil.example"]],
     ids=str,
 )  # fmt: skip
-def test_a_site_whose_name_leads_here_gets_nothing(server, hosts):
+def test_requests_for_other_host_names_are_refused(server, hosts):
     for path in ("/", "/events"):
         status, text = get(server.url, path=path, hosts=hosts)
         assert status == 403
@@ -139,17 +139,17 @@ def test_a_site_whose_name_leads_here_gets_nothing(server, hosts):
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "LOCALHOST:9000", "127.0.0.1:1"])
-def test_this_machine_may_be_called_by_its_names_through_any_port(server, host):
+def test_requests_may_name_this_machine_and_any_port(server, host):
     assert get(server.url, hosts=[host]) == (200, "<p>a page</p>")
 
 
 @pytest.mark.parametrize("path", ["/etc/passwd", "/../page.py", "/web/", "/page.html"])
-def test_there_is_nothing_but_the_page(server, path):
+def test_other_addresses_are_not_found(server, path):
     assert get(server.url, path=path)[0] == 404
 
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS", "HEAD"])
-def test_nothing_but_get_is_answered(server, method):
+def test_only_get_requests_are_answered(server, method):
     status, text = get(server.url, method)
     assert status == 501
     assert "a page" not in text
@@ -175,7 +175,7 @@ def test_stopping_ends_all_threads_and_frees_the_port():
     server.stop()  # once more does nothing
 
 
-def test_what_was_published_last_is_sent_before_the_end(server):
+def test_the_last_message_is_sent_before_the_end(server):
     """Even if a listener is still busy with an earlier message when the server is stopped."""
     gate = threading.Event()
     server.publish(lambda: "early" if gate.wait(60) else "never")
@@ -191,7 +191,7 @@ def test_what_was_published_last_is_sent_before_the_end(server):
     stopping.join()
 
 
-def test_two_can_be_shown_at_once():
+def test_two_pages_can_be_shown_at_once():
     with PageServer("one") as one, PageServer("two") as two:
         assert (get(one.url)[1], get(two.url)[1]) == ("one", "two")
 
@@ -209,7 +209,7 @@ def test_a_port_in_use_is_refused_by_its_number(server):
 
 
 @pytest.mark.parametrize("wrong", [{"block": 1}, {"open_browser": "yes"}])
-def test_what_is_neither_yes_nor_no_is_refused(fig2a_plan, wrong):
+def test_switches_that_are_not_booleans_are_refused(fig2a_plan, wrong):
     with pytest.raises(fp.InvalidInput, match=next(iter(wrong))):
         fig2a_plan.show(**{"block": False, "open_browser": False, **wrong})
 
@@ -238,7 +238,7 @@ def test_a_killed_process_leaves_nothing_behind(plan_file):
     assert not listens(port_of(url))
 
 
-def test_a_script_whose_end_is_reached_ends_while_the_page_is_shown(plan_file):
+def test_a_script_ends_although_its_page_is_shown(plan_file):
     script = (
         f"import ffsr_plan as fp; shown = fp.Plan.load({str(plan_file)!r})"
         ".show(block=False, open_browser=False); print(shown.url, flush=True)"
@@ -262,7 +262,7 @@ def test_view_serves_until_ctrl_c_and_that_is_no_error(plan_file, fig2a_plan):
     assert not listens(port_of(url))
 
 
-def test_view_refuses_what_it_cannot_show(plan_file, server, tmp_path):
+def test_view_refuses_files_and_ports_that_are_unusable(plan_file, server, tmp_path):
     from typer.testing import CliRunner
 
     from ffsr_plan.cli import app

@@ -1,8 +1,9 @@
-"""The documentation says what is so: its code runs, prints what it shows, and has every name."""
+"""Pages of the documentation: code, output, scenarios, links and the list of public names."""
 
 import ast
 import contextlib
 import io
+import json
 import re
 import shlex
 import webbrowser
@@ -13,24 +14,24 @@ from typer.testing import CliRunner
 import ffsr_plan as fp
 from ffsr_plan.cli import app
 from ffsr_plan.display.page_server import PageServer
-from ffsr_plan.scenario_files.scenario import ScenarioFile
 from tests.helpers.documentation_pages import PAGES, ROOT, blocks, title
 
+SLOW_PAGES = ("command_line.md", "manipulator.md", "planning.md")
 _LINK = re.compile(r"\]\((?!https?://|#)(?P<path>[^)#\s]+)(?:#[^)]*)?\)")
 
 
 def with_blocks(*kinds):
-    """Pages that have such blocks; those of the README plan the longest."""
+    """Pages that have such blocks; the commands of one page plan all bundled scenarios."""
     return [
-        pytest.param(page, id=title(page), marks=[pytest.mark.slow] * (page.name == "README.md"))
+        pytest.param(page, id=title(page), marks=[pytest.mark.slow] * (page.name in SLOW_PAGES))
         for page in PAGES
         if blocks(page, *kinds)
     ]
 
 
 @pytest.fixture(autouse=True)
-def nobody_looks(monkeypatch):
-    """No browser opens, and pages are not waited for."""
+def no_browser(monkeypatch):
+    """No browser opens, and served pages stop at once."""
 
     def none():
         raise webbrowser.Error
@@ -40,7 +41,7 @@ def nobody_looks(monkeypatch):
 
 
 @pytest.mark.parametrize("page", with_blocks("python"))
-def test_the_code_on_a_page_runs_and_prints_what_stands_under_it(page, tmp_path, monkeypatch):
+def test_code_on_a_page_runs_and_prints_the_output_below_it(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names = {}
     for block in blocks(page, "python"):
@@ -75,43 +76,43 @@ def test_the_table_of_scenario_keys_has_all_of_them():
     text = (ROOT / "docs/howto/scene.md").read_text().split("### All keys")[1]
     rows = [line.split("|")[2] for line in text.splitlines() if line.startswith("|")]
     listed = {key for row in rows for key in re.findall(r"`(\w+)`", row)}
-    known = {"title"}
-    for name, field in ScenarioFile.model_fields.items():
-        if name not in ("title", "planner"):
-            (table,) = {*getattr(field.annotation, "__args__", ()), field.annotation} & TABLES
-            known |= set(table.model_fields)
-    assert listed == known | {"name", "seed", "refine"}  # a planner's own are listed with it
+    schema = json.loads(CliRunner().invoke(app, ["schema"]).stdout)
+    known = {"title", "name", "seed", "refine"}  # the settings of planners are listed elsewhere
+    for key, value in schema["properties"].items():
+        if key != "planner":
+            known |= {name for table in tables(value, schema) for name in table["properties"]}
+    assert listed == known
 
 
-TABLES = {
-    inner
-    for field in ScenarioFile.model_fields.values()
-    for inner in (field.annotation, *getattr(field.annotation, "__args__", ()))
-    if hasattr(inner, "model_fields")
-}
+def tables(value, schema):
+    """The tables that a value of a JSON schema may be, or that its items may be."""
+    if "$ref" in value:
+        return [schema["$defs"][value["$ref"].rpartition("/")[2]]]
+    options = value.get("anyOf", []) + value.get("oneOf", []) + [value.get("items", {})]
+    return [table for option in options if option for table in tables(option, schema)]
 
 
-def test_every_public_name_stands_in_the_reference_once():
+def test_every_public_name_is_in_the_reference_once():
     text = "".join(page.read_text() for page in (ROOT / "docs/api").glob("*.md"))
     entries = re.findall(r"^::: ffsr_plan\.(\w+)$", text, re.M)
     assert sorted(set(entries) & set(fp.__all__)) == sorted(fp.__all__)
     assert len(set(entries)) == len(entries)
 
 
-def test_every_public_name_says_what_it_is():
+def test_every_public_name_has_a_docstring():
     for name in fp.__all__:
         assert (getattr(fp, name).__doc__ or "").strip(), name
 
 
 @pytest.mark.parametrize("page", [pytest.param(page, id=title(page)) for page in PAGES])
-def test_links_between_files_lead_somewhere_in_the_repository_too(page):
+def test_links_between_files_exist_in_the_repository(page):
     for link in _LINK.finditer(page.read_text(encoding="utf-8")):
         target = (page.parent / link["path"]).resolve()
         assert target.is_relative_to(ROOT), link[0]
         assert target.exists(), link[0]
 
 
-def test_python_that_is_shown_but_not_run_is_at_least_python():
+def test_python_that_is_not_run_can_be_parsed():
     for page in PAGES:
         for block in blocks(page, "py"):
             ast.parse(block.text)
@@ -124,3 +125,8 @@ def test_every_benchmark_table_is_listed_with_its_command():
             assert re.search(rf"`python -m benchmarks\.[\w.]+`.*\]\({table.name}\)", index), (
                 table.name
             )
+
+
+@pytest.mark.parametrize(("page", "lines"), [("README.md", 150), ("CONTRIBUTING.md", 80)])
+def test_pages_for_newcomers_stay_short(page, lines):
+    assert len((ROOT / page).read_text(encoding="utf-8").splitlines()) <= lines

@@ -1,4 +1,4 @@
-"""The documentation site as it is built: whole, without warnings, and without the network."""
+"""The documentation site: built without warnings, complete, and independent of the network."""
 
 import json
 import re
@@ -17,12 +17,12 @@ pytest.importorskip("mkdocs", reason="the extra 'docs' is not installed")
 pytestmark = pytest.mark.slow
 
 VERBATIM = ("code", "script", "style")
-# what makes a browser load something, and from where
+# elements that make a browser load a file, and the attribute with its address
 LOADED = {"script": "src", "img": "src", "iframe": "src", "link": "href"}
 
 
 class Page(HTMLParser):
-    """Links, loaded files and anchors of a page; equations drawn and equations left as written."""
+    """Links, loaded files and anchors of a page; number of equations and of unconverted ones."""
 
     def __init__(self, path):
         super().__init__()
@@ -86,8 +86,8 @@ def test_links_inside_the_site_and_their_anchors_exist(site):
             address, anchor = urldefrag(link)
             if re.match(r"\w+:", address) or link.startswith("#__"):
                 continue
-            here = Path(name).parent
-            target = name if not address else (Path("/") / here / unquote(address)).resolve()
+            folder = Path("/") / Path(name).parent
+            target = name if not address else (folder / unquote(address)).resolve()
             target = str(target).lstrip("/")
             if target.endswith(".html"):
                 assert target in site, (name, link)
@@ -99,7 +99,7 @@ def test_every_public_name_has_an_entry(site):
     assert {f"ffsr_plan.{name}" for name in fp.__all__} <= anchors
 
 
-def test_notebooks_show_the_outputs_that_are_stored_in_them(site):
+def test_notebooks_show_their_stored_outputs(site):
     notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
     assert notebooks
     for path in notebooks:
@@ -110,6 +110,12 @@ def test_notebooks_show_the_outputs_that_are_stored_in_them(site):
             assert sum(kind in data for data in shown) == sum(
                 address.startswith(path.stem) and address.endswith(ending) for address in loaded
             )
+
+
+def test_every_example_is_on_the_page_of_examples(folder):
+    page = (folder / "examples.html").read_text(encoding="utf-8")
+    for script in (ROOT / "examples").glob("*.py"):
+        assert f"examples/{script.name}" in page
 
 
 def test_equations_are_drawn_without_a_script(site):

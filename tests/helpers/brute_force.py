@@ -1,4 +1,4 @@
-"""The exact lattice optimum by the book: every edge certified, then a shortest path."""
+"""Exact lattice optimum by brute force: all edges certified, then a shortest path."""
 
 import numpy as np
 
@@ -25,15 +25,17 @@ def optimum(roadmap):
 
 
 def first_layer_out_of_reach(roadmap):
-    """The first layer of which no node can be reached over certified edges, or None."""
+    """The first layer of which no node can be reached over free edges, or None."""
     m, n, origin = roadmap.lattice.divisions, roadmap.lattice.size, roadmap.lattice.origin
     reached = {origin}
     for i in range(m):
         heads = [origin] if i == m - 1 else range(n)
         reached = {
-            head for head in heads for tail in reached
+            head
+            for head in heads
+            for tail in reached
             if roadmap.admissible[i + 1, head] and roadmap.certify(i, tail, head).free
-        }  # fmt: skip
+        }
         if not reached:
             return i + 1
     return None

@@ -1,4 +1,4 @@
-"""Robots, configurations and scenes made at random from a seed, and URDF text by hand."""
+"""Random robots, configurations and scenes from a seed, and URDF elements as text."""
 
 import numpy as np
 
@@ -56,8 +56,8 @@ def random_robot(
 ):
     """A tree of boxes and spheres with moderate, physical inertias.
 
-    `solids` (functions of a radius and a length: `capsule`, `cylinder`) take the place of every
-    other shape; `options` go to `robot_from_urdf`.
+    `solids` (functions of a radius and a length: `capsule`, `cylinder`) replace most shapes of the
+    arms; `options` are passed to `robot_from_urdf`.
     """
     rng, more = np.random.default_rng(seed), np.random.default_rng(seed + 1)
     parts = [
@@ -89,10 +89,15 @@ def random_robot(
             )
             parts.append(
                 joint(
-                    f"j{arm}_{k}", str(rng.choice(kinds)), parent, name, offset,
-                    rng.uniform(-3, 3, 3), axis / np.linalg.norm(axis),
+                    f"j{arm}_{k}",
+                    str(rng.choice(kinds)),
+                    parent,
+                    name,
+                    offset,
+                    rng.uniform(-3, 3, 3),
+                    axis / np.linalg.norm(axis),
                 )
-            )  # fmt: skip
+            )
             parent = name
     return robot_from_urdf(urdf(*parts), f"random_{seed}", **options)
 
@@ -109,7 +114,7 @@ def random_scene(rng, count=6, low=(-1, -3, -0.5), high=(9, 3, 0.5), radii=(0.1,
 
 
 def _moments(rng, size):
-    """Principal moments of some body: sums of pairs of positive second moments."""
+    """Principal moments of a random body: sums of pairs of positive second moments."""
     x, y, z = rng.uniform(0.05, 1.0, 3) * size
     return float(y + z), float(x + z), float(x + y)
 

@@ -1,4 +1,4 @@
-"""A headless Chromium that is asked, over its debugging socket, what it shows."""
+"""Headless Chromium, controlled through its debugging socket."""
 
 import asyncio
 import base64
@@ -13,11 +13,19 @@ from tornado.websocket import websocket_connect
 
 PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = [
-    "--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
-    "--disable-background-networking", "--disable-component-update", "--use-gl=angle",
-    "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--window-size=1280,720",
-]  # fmt: skip
-_PATIENCE = 60.0
+    "--headless",
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-sync",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--window-size=1280,720",
+]
+_TIMEOUT = 60.0  # [s]
 
 
 class Tab:
@@ -27,13 +35,13 @@ class Tab:
         self._address = address
 
     def ask(self, expression):
-        """The value of an expression of JavaScript."""
+        """The value of a JavaScript expression."""
         answer = asyncio.run(self._call("Runtime.evaluate", expression=expression))
         return answer["result"].get("value")
 
     def wait_until(self, expression):
-        """Until it is true."""
-        deadline = time.monotonic() + _PATIENCE
+        """Wait until a JavaScript expression is true."""
+        deadline = time.monotonic() + _TIMEOUT
         while not self.ask(expression):
             assert time.monotonic() < deadline, f"never: {expression}"
             time.sleep(0.1)
@@ -61,14 +69,14 @@ def opened(url, folder):
         stderr=subprocess.DEVNULL,
     )
     try:
-        deadline, told = time.monotonic() + _PATIENCE, folder / "DevToolsActivePort"
-        while not (told.exists() and told.read_text().count("\n")):
+        deadline, port_file = time.monotonic() + _TIMEOUT, folder / "DevToolsActivePort"
+        while not (port_file.exists() and port_file.read_text().count("\n")):
             assert time.monotonic() < deadline, "the browser does not start"
             time.sleep(0.1)
-        port = told.read_text().split("\n")[0]
+        port = port_file.read_text().split("\n")[0]
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/json") as answer:
             tabs = json.load(answer)
         yield Tab(next(t["webSocketDebuggerUrl"] for t in tabs if t["type"] == "page"))
     finally:
         browser.terminate()
-        browser.wait(_PATIENCE)
+        browser.wait(_TIMEOUT)

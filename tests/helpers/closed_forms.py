@@ -1,4 +1,4 @@
-"""Distances in closed form, independent of Coal: by obvious scalar loops, and many at once."""
+"""Distances in closed form, independent of Coal: by scalar loops, and for arrays."""
 
 import math
 
@@ -35,7 +35,7 @@ def clearance(robot, scene, q):
 
 
 def clearances(robot, scene, q):
-    """(N,) clearances of (N, nq) configurations, through the reading of the URDF that verifies."""
+    """(N,) clearances of (N, nq) configurations, with the URDF reader of the verification."""
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
     values = robot.joint_values(q)
     joints = {name: values[:, k] for k, name in enumerate(robot.joint_names)}

@@ -1,4 +1,4 @@
-"""The pages of the documentation, and the blocks in them."""
+"""Pages of the documentation, and their code blocks."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ _BLOCK = re.compile(
 
 
 class Block(NamedTuple):
-    """A block of code, and the `text` block right under it, which shows what it prints."""
+    """A code block, and the `text` block below it with its output."""
 
     kind: str
     text: str
@@ -20,9 +20,9 @@ class Block(NamedTuple):
 
 
 def blocks(page, *kinds):
-    """The blocks of these kinds in a page, from the top."""
-    found = _BLOCK.finditer(page.read_text(encoding="utf-8"))
-    return [Block(m["kind"], m["text"], m["shown"]) for m in found if m["kind"] in kinds]
+    """The blocks of these kinds in a page, in order."""
+    matches = _BLOCK.finditer(page.read_text(encoding="utf-8"))
+    return [Block(m["kind"], m["text"], m["shown"]) for m in matches if m["kind"] in kinds]
 
 
 def title(page):

@@ -1,9 +1,9 @@
-"""Robots flown by MuJoCo: an engine that shares no code with the package moves the bodies.
+"""Flights simulated by MuJoCo, which shares no code with the package.
 
-MuJoCo compiles the robot's own URDF, masses and inertias included. No gravity, no contacts, no
-joint limits. A controller asks at every stage of the Runge-Kutta steps for the accelerations of the
-joints, and of what thrusters and wheels can move, and applies the forces that bring them about;
-whatever is not controlled moves as the engine's laws of motion say:
+MuJoCo compiles the robot's own URDF, masses and inertias included, without gravity, contacts and
+joint limits. At every stage of the Runge-Kutta steps a controller computes the accelerations wanted
+of the joints and of the actuated coordinates of the base, and applies the forces that cause them.
+The other coordinates follow from MuJoCo's equations of motion:
 
 - `free-flying`: thrusters push the base along a line through the robot's centre of mass, so that
   its origin follows a path; its attitude is free.
@@ -27,31 +27,38 @@ _SPEED, _ACCELERATION = _LAW.deriv(1), _LAW.deriv(2)
 
 
 class Course(NamedTuple):
-    """What is asked for at one time: values, their first and second derivatives."""
+    """Wanted values at one time, with their first and second time derivatives.
+
+    Attributes:
+        positions: (3,) of the base origin, world [m].
+        attitudes: quaternion (4,) xyzw, angular velocity and acceleration (3,), base axes.
+        joints: (nd,) [rad or m].
+    """
 
     positions: tuple
-    """(3,) of the base origin, world [m]."""
     attitudes: tuple
-    """Quaternion (4,) xyzw, angular velocity and acceleration (3,), base axes."""
     joints: tuple
-    """(nd,) [rad or m]."""
 
 
 class Flight(NamedTuple):
-    """What was flown, at N times."""
+    """Simulated states at N times.
+
+    Attributes:
+        times: (N,) [s].
+        positions: (N, 3) base origin, world [m].
+        attitudes: (N, 4) of the base, xyzw.
+        joints: (N, nd) [rad or m].
+        momenta: (N, 3) angular momentum of base and arms about the centre of mass, world axes
+            [N m s].
+        impulses: (N, 3) integral of the wheels' moment on the base, world axes [N m s].
+    """
 
     times: np.ndarray
-    """(N,) [s]."""
     positions: np.ndarray
-    """(N, 3) base origin, world [m]."""
     attitudes: np.ndarray
-    """(N, 4) of the base, xyzw."""
     joints: np.ndarray
-    """(N, nd)."""
     momenta: np.ndarray
-    """(N, 3) angular momentum of base and arms about the centre of mass, world axes [N m s]."""
     impulses: np.ndarray
-    """(N, 3) integral of the wheels' moment on the base, world axes [N m s]."""
 
 
 def progress(times, duration, parts=1):
@@ -67,10 +74,11 @@ def progress(times, duration, parts=1):
 
 
 def course_of(plan, duration, parts=1):
-    """What a plan asks for: base path and joints, straight from corner to corner.
+    """The course of a plan: base position and joints, straight between its nodes.
 
-    A joint path with corners is followed exactly if it is flown from rest to rest on every edge,
-    `parts` being their number. Wheels turn the base steadily from the start to the goal.
+    A joint path with corners is followed exactly if every edge goes from rest to rest, `parts`
+    being the number of edges. The wheels rotate the base at a rate proportional to that of the
+    path parameter.
     """
     corners = np.hstack([plan.motion.positions, plan.motion.joint_values])
     edges, start = len(corners) - 1, plan.problem.start[3:7]
@@ -92,16 +100,20 @@ def course_of(plan, duration, parts=1):
 
 
 def mujoco_model(robot):
-    """The robot's URDF through MuJoCo's compiler, with a free joint on the base.
+    """The robot's URDF compiled by MuJoCo, with a free joint on the base.
 
-    Release 4 at least: 3.3 leaves out how the axes of an `<inertial>` are turned.
+    It needs release 4: release 3.3 ignores the rotation of an `<inertial>`.
     """
     root = ElementTree.fromstring(robot.urdf)
     for link in root.findall("link"):
         for shape in [*link.findall("collision"), *link.findall("visual")]:
             link.remove(shape)
-    settings = {"fusestatic": "false", "balanceinertia": "false", "boundmass": "0",
-                "boundinertia": "0"}  # fmt: skip
+    settings = {
+        "fusestatic": "false",
+        "balanceinertia": "false",
+        "boundmass": "0",
+        "boundinertia": "0",
+    }
     ElementTree.SubElement(ElementTree.SubElement(root, "mujoco"), "compiler", settings)
     spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
     spec.worldbody.first_body().add_freejoint()
@@ -138,9 +150,13 @@ def fly(robot, mode, course, duration, step=0.04, every=5):
         mujoco.set_mjcb_control(None)
     table, joints = np.array(rows), 1 + np.array(pilot.slots)
     return Flight(
-        table[:, 0], table[:, 1:4], table[:, [5, 6, 7, 4]], table[:, joints], table[:, -6:-3],
+        table[:, 0],
+        table[:, 1:4],
+        table[:, [5, 6, 7, 4]],
+        table[:, joints],
+        table[:, -6:-3],
         table[:, -3:],
-    )  # fmt: skip
+    )
 
 
 def joint_space_inertia(model, data):
@@ -157,7 +173,7 @@ def joint_slots(robot, model):
 
 
 class _Pilot:
-    """Called by the engine whenever it has worked out the momentary equations of motion."""
+    """Control callback of MuJoCo; applies the forces of the wanted accelerations."""
 
     def __init__(self, robot, model, mode, course):
         self.slots, self._dofs = joint_slots(robot, model)
@@ -171,7 +187,7 @@ class _Pilot:
         self.moments = []
 
     def begin(self, data):
-        """Put the robot where the course begins."""
+        """Set the state to the beginning of the course."""
         wanted = self._course(0.0)
         data.qpos[:3], data.qpos[3:7] = wanted.positions[0], np.roll(wanted.attitudes[0], 1)
         data.qpos[self.slots] = wanted.joints[0]

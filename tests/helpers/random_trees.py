@@ -1,4 +1,4 @@
-"""Robots put together joint by joint, with what a URDF does not bring: capsules and hulls."""
+"""Robots built joint by joint, with all kinds of joints and shapes, hulls included."""
 
 from typing import NamedTuple
 
@@ -22,10 +22,18 @@ Z = (0.0, 0.0, 1.0)
 
 
 class Limb(NamedTuple):
-    """A link with the joint that it hangs on; the joint's axis is along x, y, z or anywhere."""
+    """A link with the joint to its parent.
+
+    Attributes:
+        parent: 0 for the base, k for the k-th limb.
+        kind: kind of the joint.
+        axis: 0, 1 or 2 for x, y or z, or a unit vector.
+        place: placement of the joint in the parent's frame.
+        body: mass and inertia.
+        shapes: pairs of a Coal solid and its placement.
+    """
 
     parent: int
-    """0 for the base, k for the k-th limb."""
     kind: str
     axis: "int | tuple[float, float, float]"
     place: pin.SE3
@@ -89,7 +97,7 @@ def random_tree(seed, arms=2, depth=4):
                     [(_solid(rng), reach)],
                 )
             )
-            # now and then a branch in the middle of an arm
+            # sometimes an arm branches
             parent = len(limbs) if rng.random() < 0.85 else parent
     return put_together(base, [(_solid(rng), _somewhere(rng, 0.3))], limbs)
 
@@ -100,7 +108,7 @@ def _somewhere(rng, reach):
 
 
 def _moments(rng, size):
-    """Inertia of some body: slender, flat or round, turned anyhow."""
+    """Inertia of a random body, slender, flat or round, in random axes."""
     x, y, z = 10.0 ** rng.uniform(-2.0, 0.0, 3) * size
     turn = rotations.matrix(rotations.exp(rng.normal(size=3)))
     return turn @ np.diag([y + z, x + z, x + y]) @ turn.T

@@ -1,4 +1,4 @@
-"""A robot of one link, and meshes to hang on it."""
+"""Robots of one link, and meshes for it."""
 
 import numpy as np
 import trimesh

@@ -1,8 +1,8 @@
-"""A robot whose arms can turn its base about every axis, and the posture axes that do it.
+"""A robot whose arms can rotate its base about every axis, and its posture axes.
 
-By the area law a small loop of the joints in the plane of two posture axes turns the base by the
-area of the loop times the curvature of the connection there. The two arms' shoulders and elbows are
-set so that the curvatures of the three pairs of axes point three ways (`curvatures`).
+By the area law a small loop of the joints in the plane of two posture axes rotates the base by the
+area of the loop times the curvature of the connection there. The posture `REST` is chosen such that
+the curvatures of the three pairs of axes are linearly independent (`curvatures`).
 """
 
 import math
@@ -20,8 +20,13 @@ from tests.helpers.builders import box, capsule, inertial, joint, link, sphere, 
 BUS, LIMB, REACH = 0.5, 0.6, 0.45  # edge of the bus, length of a limb, shoulder from the middle [m]
 BUS_MASS, LIMB_MASS = 20.0, 4.0  # kg
 REST = {
-    "left_1": 1.2, "left_2": 0.2, "left_3": -1.4, "right_1": 1.2, "right_2": -0.2, "right_3": 1.4
-}  # fmt: skip
+    "left_1": 1.2,
+    "left_2": 0.2,
+    "left_3": -1.4,
+    "right_1": 1.2,
+    "right_2": -0.2,
+    "right_3": 1.4,
+}
 AXES = ({"left_1": 1, "right_1": -1}, {"left_2": 1, "right_2": 1}, {"left_3": 1, "right_3": 1})
 
 
@@ -51,15 +56,19 @@ def spatial_robot():
 
 
 def spatial_problem(degrees, axis, divisions=60, levels=4, spacing=0.3):
-    """Turn about an axis (3,) in the base's axes, from rest and back to it."""
+    """Rotation about an axis (3,) in the base's axes, joints from `REST` to `REST`."""
     robot = spatial_robot()
-    turned = rotations.exp(math.radians(degrees) * np.array(axis) / np.linalg.norm(axis))
-    goal = robot.configuration((0, 0, 0), tuple(rotations.to_angles(turned)), REST)
+    attitude = rotations.exp(math.radians(degrees) * np.array(axis) / np.linalg.norm(axis))
+    goal = robot.configuration((0, 0, 0), tuple(rotations.to_angles(attitude)), REST)
     postures = [fp.PostureAxis(along, levels, spacing) for along in AXES]
     return fp.Problem(
-        robot, fp.Scene(), robot.configuration(joints=REST), goal,
-        lattice=fp.Lattice(divisions, postures=postures), reach_attitude=True,
-    )  # fmt: skip
+        robot,
+        fp.Scene(),
+        robot.configuration(joints=REST),
+        goal,
+        lattice=fp.Lattice(divisions, postures=postures),
+        reach_attitude=True,
+    )
 
 
 def curvatures(robot, joint_values, directions):

@@ -103,7 +103,7 @@ def test_a_continuous_joint_goes_the_shorter_way_round():
     start = robot.configuration(joints={name: 3.0})
     goal = robot.configuration((5.0, 0.0, 0.0), joints={name: -3.0})
     turning = fp.Problem(robot, fp.Scene(), start, goal, lattice=fp.Lattice(4))
-    assert turning.joint_travel == pytest.approx([2 * np.pi - 6.0])
+    assert turning.joint_displacement == pytest.approx([2 * np.pi - 6.0])
     plan = fp.plan(turning)
     assert plan.length == pytest.approx(np.hypot(5.0, 2 * np.pi - 6.0))
     assert np.allclose(plan.configurations[-1][7:], goal[7:], atol=1e-12)

@@ -37,7 +37,7 @@ def corner(along):
 
 
 @pytest.mark.parametrize("along", [0, 1, 2])
-def test_an_l_gets_two_boxes_that_are_nearly_itself(along):
+def test_an_l_becomes_two_boxes(along):
     boxes = box_cover.boxes_around(triangles_of(corner(along)))
     assert len(boxes) == 2
     wanted = 0.1 * 0.1 * 0.9 + 0.1 * 0.4 * 0.1
@@ -71,12 +71,12 @@ def test_points_within_a_ring_a_ball_and_a_rod_are_in_the_boxes():
             points = rng.uniform(-0.5, 0.5, (20000, 3))
             points = points[inside(points)] @ turn[:3, :3].T
             boxes = box_cover.boxes_around(triangles_of(mesh.copy().apply_transform(turn)))
-            assert 1 <= len(boxes) <= box_cover.MOST
+            assert 1 <= len(boxes) <= box_cover.MOST_BOXES
             assert held(boxes, points).all()
 
 
 @pytest.mark.parametrize("name", ["kinova", "ur5", "z1"])
-def test_the_boxes_hold_the_surface_of_every_mesh_of_an_arm(name):
+def test_the_boxes_contain_every_mesh_of_an_arm(name):
     arm, rng = arms.load_arm(name, {}), np.random.default_rng(1)
     for mesh in arm.robot.iterfind("link/collision/geometry/mesh"):
         triangles = surface(mesh.get("filename"), arm.folders, name)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.core.rotations import from_angles, matrix
-from ffsr_plan.meshes.sphere_cover import _winding
+from ffsr_plan.meshes.sphere_cover import winding_number
 
 POSE = {"scale": 2.0, "position": (1.0, -2.0, 0.5), "attitude": (0.7, -0.4, 1.2)}
 MESHES = {
@@ -41,7 +41,7 @@ def posed(points):
 
 @pytest.mark.parametrize("name", MESHES)
 @pytest.mark.parametrize("excess", [0.4, 0.15])
-def test_all_that_a_mesh_encloses_lies_in_the_spheres_pose_and_scale_included(name, excess):
+def test_spheres_cover_a_posed_and_scaled_mesh(name, excess):
     rng = np.random.default_rng(0)
     scene = fp.Scene.from_mesh(MESHES[name], excess, **POSE)
     assert all(covered(scene, posed(points_in(MESHES[name], 400, rng))))
@@ -50,7 +50,7 @@ def test_all_that_a_mesh_encloses_lies_in_the_spheres_pose_and_scale_included(na
 
 @pytest.mark.parametrize("name", MESHES)
 @pytest.mark.parametrize("excess", [0.2, 0.07])
-def test_no_sphere_reaches_farther_beyond_the_mesh_than_stated(name, excess):
+def test_no_sphere_exceeds_the_stated_excess(name, excess):
     mesh, rng = MESHES[name], np.random.default_rng(1)
     scene = fp.Scene.from_mesh(mesh, excess)
     chosen = rng.choice(len(scene), 200)
@@ -73,7 +73,7 @@ def reach_beyond_box(centers, radii, half):
 
 @given(st.integers(0, 100_000))
 @settings(max_examples=25)
-def test_every_ball_around_a_box_reaches_as_far_as_stated_at_most(seed):
+def test_every_ball_around_a_box_keeps_the_excess(seed):
     """From a middle at depth d, a ball of radius R reaches R - d beyond the box: closed form."""
     rng = np.random.default_rng(seed)
     half, angles = rng.uniform(0.1, 0.7, 3), rng.uniform(-1.5, 1.5, 3) * (seed % 2)
@@ -84,13 +84,13 @@ def test_every_ball_around_a_box_reaches_as_far_as_stated_at_most(seed):
 
 
 @pytest.mark.parametrize("cubes", [7, 15, 31, 63])
-def test_balls_that_fit_the_grid_up_to_the_surface_reach_no_farther_than_stated(cubes):
+def test_balls_that_fit_the_grid_keep_the_excess(cubes):
     half, excess = 0.5 * cubes * 0.1 / np.sqrt(3.0), 0.1  # a larger cube would end at the surface
     scene = fp.Scene.from_mesh(trimesh.creation.box((2.0 * half,) * 3), excess)
     assert reach_beyond_box(scene.centers, scene.radii, half) <= excess
 
 
-def test_inner_cubes_are_put_together():
+def test_enclosed_cubes_are_merged():
     """Each cube on its own would take twice to three times as many spheres."""
     ball = trimesh.creation.icosphere(3, 1.0)
     solid = fp.Scene.from_mesh(ball, 0.1)
@@ -108,7 +108,7 @@ def test_half_the_excess_needs_about_four_times_the_spheres():
     assert np.all(np.diff(np.log2(counts)) < 2.5)
 
 
-def test_a_hollow_with_walls_of_its_own_stays_free_and_a_narrow_mouth_does_not_fill_it():
+def test_cavities_and_narrow_openings_stay_free():
     outer, inner = trimesh.creation.icosphere(3, 1.0), trimesh.creation.icosphere(3, 0.7)
     inner.invert()
     hollow = trimesh.util.concatenate([outer, inner])
@@ -117,10 +117,19 @@ def test_a_hollow_with_walls_of_its_own_stays_free_and_a_narrow_mouth_does_not_f
     assert covered(scene, np.array([[0.0, 0.85, 0.0]]))[0]
     # a pipe closed but for a hole far smaller than a cube: its hollow is outside, and stays free
     neck = trimesh.creation.revolve(
-        [(0.01, 0.0), (0.6, 0.0), (0.6, 1.0), (0.0, 1.0), (0.0, 0.8), (0.4, 0.8), (0.4, 0.2),
-         (0.01, 0.2), (0.01, 0.0)],
+        [
+            (0.01, 0.0),
+            (0.6, 0.0),
+            (0.6, 1.0),
+            (0.0, 1.0),
+            (0.0, 0.8),
+            (0.4, 0.8),
+            (0.4, 0.2),
+            (0.01, 0.2),
+            (0.01, 0.0),
+        ],
         sections=24,
-    )  # fmt: skip
+    )
     assert neck.is_watertight
     if neck.volume < 0:
         neck.invert()
@@ -138,7 +147,17 @@ def test_parts_that_overlap_and_parts_turned_inside_out_are_solid():
     assert covered(fp.Scene.from_mesh(left, 0.1), np.zeros((1, 3)))[0]
 
 
-def test_an_open_mesh_is_refused_but_for_its_surface():
+def test_parts_that_share_an_edge_or_a_face_are_closed():
+    box = MESHES["box"]
+    for shift in ((0.0, 0.4, 0.2), (0.0, 0.0, 0.2), (0.0, 0.0, 0.0)):
+        other = box.copy()
+        other.apply_translation(shift)
+        both = trimesh.Trimesh(np.vstack([box.vertices, other.vertices]), process=False)
+        both.faces = np.vstack([box.faces, other.faces + len(box.vertices)])
+        assert all(covered(fp.Scene.from_mesh(both, 0.2), np.array([[0.0, 0.0, 0.0], shift])))
+
+
+def test_of_an_open_mesh_only_the_surface_is_covered():
     bowl = trimesh.creation.icosphere(2, 0.5).slice_plane((0, 0, 0), (0, 0, 1))
     with pytest.raises(fp.InvalidInput, match=r"edges without a neighbour.*inside=False"):
         fp.Scene.from_mesh(bowl, 0.1)
@@ -170,10 +189,10 @@ def test_random_polyhedra_lie_in_their_spheres(seed):
     assert all(covered(scene, np.vstack([shares @ mesh.vertices, mesh.vertices])))
 
 
-def test_the_winding_number_of_a_sphere_is_one_inside_and_zero_outside():
+def test_the_winding_number_is_one_inside_and_zero_outside():
     ball = np.asarray(trimesh.creation.icosphere(2).triangles)
-    assert _winding(ball, np.array([0.3, 0.2, -0.4])) == pytest.approx(1.0)
-    assert _winding(ball, np.array([1.3, 0.2, -0.4])) == pytest.approx(0.0, abs=1e-12)
+    assert winding_number(ball, np.array([0.3, 0.2, -0.4])) == pytest.approx(1.0)
+    assert winding_number(ball, np.array([1.3, 0.2, -0.4])) == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from tests.helpers.builders import random_configuration, random_robot, random_sc
 @pytest.fixture(scope="module")
 def experiment():
     """The paper's experiment, 20 seeds for each delta."""
-    scenarios = [fp.read_scenario(name) for name in ("fig2a", "fig2b")]
+    scenarios = [fp.Scenario.load(name) for name in ("fig2a", "fig2b")]
     return {
         s.problem.delta: [fp.plan(s.problem, s.planner, seed, refine=False) for seed in range(20)]
         for s in scenarios
@@ -91,7 +91,7 @@ def test_the_base_turns_although_nobody_turned_it(fig2a_plan):
 
 def test_the_objective_recomputed_from_scratch_is_the_plans(fig2a_plan):
     problem = fig2a_plan.problem
-    along = problem.start[:3] + np.arange(41)[:, None] / 40 * problem.travel
+    along = problem.start[:3] + np.arange(41)[:, None] / 40 * problem.base_displacement
     offsets = fig2a_plan.configurations[:, :3] - along
     assert path_length(problem, offsets) == pytest.approx(fig2a_plan.length, rel=1e-12)
     nearness = 6.0 * np.sum(0.1 / fig2a_plan.clearances[1:-1])

@@ -26,7 +26,7 @@ def point_problem(point, seed, **changes):
 
 @given(st.integers(0, 10_000))
 @settings(max_examples=40)
-def test_node_clearances_length_and_objective_equal_their_closed_forms(seed):
+def test_clearance_length_and_objective_have_closed_forms(seed):
     point = fp.load_robot("point")
     problem, scene = point_problem(point, seed)
     plan = fp.plan(problem, fp.AntSystem(ants=3, cycles=2), seed, refine=False)
@@ -46,7 +46,7 @@ def test_node_clearances_length_and_objective_equal_their_closed_forms(seed):
     assert plan.objective == pytest.approx(expected, rel=1e-12)
 
 
-def test_the_cap_bounds_the_wish_for_distance(point):
+def test_the_cap_bounds_the_clearance_term(point):
     far = fp.Scene([[5, 100, 0]], [1])
     start, goal = point.configuration(), point.configuration((10, 0, 0))
     lattice = fp.Lattice(divisions=4, lateral=fp.Axis(1, 1.0))

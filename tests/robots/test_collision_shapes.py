@@ -39,7 +39,7 @@ KINDS = ("hull", "capsule")
 
 
 @given(seeds)
-def test_clearance_equals_the_scalar_closed_form_for_robots_with_capsules(seed):
+def test_clearance_of_capsules_equals_the_closed_form(seed):
     robot, rng = random_robot(seed, solids=(capsule,)), np.random.default_rng(seed)
     scene = random_scene(rng, low=-2, high=2)
     q = random_configuration(robot, rng)
@@ -77,7 +77,7 @@ def test_a_link_with_a_capsule_keeps_all_its_shapes():
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("radius", "length"), [(0.1, 0.6), (0.2, 0.1), (0.05, 0.1)])
-def test_a_cylinder_lies_inside_its_replacement_which_exceeds_it_as_stated(kind, radius, length):
+def test_a_cylinder_lies_inside_its_replacement(kind, radius, length):
     place = {"xyz": (0.3, -0.2, 0.1), "rpy": (0.4, -0.7, 1.1)}
     robot = one_link(cylinder(radius, length, **place), containers=Containers(cylinders=kind))
     (replaced,) = robot.replacements
@@ -179,7 +179,7 @@ MANY = {
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("what", MANY)
-def test_a_hull_of_many_vertices_lies_inside_a_simpler_solid_that_exceeds_it_as_stated(what, kind):
+def test_a_hull_of_many_vertices_lies_in_a_simpler_solid(what, kind):
     """Coal crashes where a vertex has 255 neighbours, and thousands of vertices are slow."""
     points = np.array(MANY[what]())
     robot = one_link(mesh("kept"), meshes={"kept": points}, containers=Containers(kind))
@@ -223,7 +223,7 @@ def test_hulls_are_centred_in_a_tight_box_of_their_own_frame(seed):
 
 @given(seeds)
 @settings(max_examples=30)
-def test_self_distance_bounds_of_the_recheck_are_below_coals_and_share_their_sign(seed):
+def test_self_distance_bounds_of_verification_match_coal(seed):
     robot = random_robot(seed, solids=(capsule, cylinder, cylinder))
     rng, query = np.random.default_rng(seed), SelfQuery(robot)
     bodies = Bodies(robot.urdf, "", robot.replacements)
@@ -262,9 +262,13 @@ def test_sharpened_distances_to_a_finely_curved_hull_are_exact(far):
                 sharpen(request)
             place.setTranslation(center)
             found = coal.distance(
-                solid, coal.Transform3s(), coal.Sphere(0.001), place, request,
+                solid,
+                coal.Transform3s(),
+                coal.Sphere(0.001),
+                place,
+                request,
                 coal.DistanceResult(),
-            )  # fmt: skip
+            )
             errors[name] = max(errors[name], abs(found - expected))
     assert errors["sharpened"] < 1e-8
     assert errors["default"] < 1e-5 * far
@@ -273,9 +277,12 @@ def test_sharpened_distances_to_a_finely_curved_hull_are_exact(far):
 def test_shapes_are_recorded_and_exact_ones_are_not(tmp_path):
     blob(2).export(tmp_path / "blob.stl")
     robot = one_link(
-        box((1, 1, 1)), cylinder(0.1, 0.2), mesh("blob.stl"), capsule(0.1, 0.2),
+        box((1, 1, 1)),
+        cylinder(0.1, 0.2),
+        mesh("blob.stl"),
+        capsule(0.1, 0.2),
         package_dirs=[str(tmp_path)],
-    )  # fmt: skip
+    )
     assert [(r.link, r.number, r.shape) for r in robot.replacements] == [
         ("base", 1, "cylinder"),
         ("base", 2, "mesh blob.stl"),
@@ -287,7 +294,7 @@ def test_shapes_are_recorded_and_exact_ones_are_not(tmp_path):
     assert fp.clearance(twin, scene, q) == fp.clearance(robot, scene, q)
 
 
-def test_mesh_addresses_are_looked_up_in_packages_beside_the_urdf_and_as_files(tmp_path):
+def test_mesh_addresses_are_packages_paths_or_files(tmp_path):
     (tmp_path / "pkg").mkdir()
     blob(3).export(tmp_path / "pkg" / "blob.stl")
     path = tmp_path / "pkg" / "robot.urdf"
@@ -299,9 +306,17 @@ def test_mesh_addresses_are_looked_up_in_packages_beside_the_urdf_and_as_files(t
 
 @pytest.mark.parametrize(
     "address",
-    ["gone.stl", "package://pkg/gone.stl", "file:///gone.stl", "http://127.0.0.1/a.stl", "bad.stl",
-     "flat.stl", "robot.urdf", "bad.dae"],
-)  # fmt: skip
+    [
+        "gone.stl",
+        "package://pkg/gone.stl",
+        "file:///gone.stl",
+        "http://127.0.0.1/a.stl",
+        "bad.stl",
+        "flat.stl",
+        "robot.urdf",
+        "bad.dae",
+    ],
+)
 def test_a_mesh_that_cannot_be_used_is_named_with_its_link(tmp_path, address):
     (tmp_path / "127.0.0.1").mkdir()
     blob(0).export(tmp_path / "127.0.0.1" / "a.stl")  # where a part of the address would lead
@@ -371,7 +386,7 @@ def test_the_triangles_of_a_hull_face_outwards(seed):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_solid_that_a_cylinder_sticks_out_of_is_found(kind):
+def test_a_solid_that_does_not_contain_a_cylinder_is_found(kind):
     robot = one_link(cylinder(0.1, 0.5), containers=Containers(cylinders=kind))
     (good,) = robot.replacements
     points = np.array(good.points)

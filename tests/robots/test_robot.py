@@ -34,7 +34,7 @@ def test_table_1_the_urdf_and_the_model_agree(robot):
     assert axes == {"JointModelRZ"}
 
 
-def test_the_right_first_link_has_its_left_twins_inertia_not_the_misprint():
+def test_the_misprinted_inertia_is_corrected():
     first = make_planar_dual_arm.ARM[0]
     assert first.inertia == pytest.approx(first.mass * first.length**2 / 12, abs=5e-6)
 
@@ -45,7 +45,7 @@ def test_the_bundled_urdf_is_what_the_table_builds(tmp_path):
     assert (tmp_path / "made.urdf").read_text() == bundled.read_text()
 
 
-def test_a_model_without_free_flyer_would_lose_the_base_so_the_mass_is_checked(robot):
+def test_the_mass_includes_the_base(robot):
     total = make_planar_dual_arm.BASE.mass + 2 * sum(body.mass for body in make_planar_dual_arm.ARM)
     assert sum(i.mass for i in robot.model.inertias) == pytest.approx(total)
 
@@ -63,6 +63,41 @@ def test_components_invert_configuration(seed):
 def test_joints_are_given_by_name_and_the_others_stay_at_zero(robot):
     q = robot.configuration(joints={"right_2": -0.3})
     assert robot.components(q).joints == dict.fromkeys(robot.joint_names, 0.0) | {"right_2": -0.3}
+
+
+def test_joints_can_be_a_posture_name_or_merged_with_one():
+    robot = fp.load_robot("satellite_ur5")
+    stowed = robot.configuration(joints="stowed")
+    assert np.array_equal(stowed, robot.configuration(joints=robot.postures["stowed"]))
+    changed = robot.configuration(joints={**robot.postures["stowed"], "arm_elbow_joint": 0.2})
+    assert robot.components(changed).joints["arm_elbow_joint"] == 0.2
+    with pytest.raises(fp.InvalidInput, match=r"joints: got 'stoved'.*did you mean 'stowed'"):
+        robot.configuration(joints="stoved")
+
+
+def test_components_of_many_configurations_are_arrays(robot):
+    rng = np.random.default_rng(0)
+    q = np.array([random_configuration(robot, rng) for _ in range(5)])
+    parts = robot.components(q)
+    assert parts.position.shape == parts.attitude.shape == (5, 3)
+    for k, row in enumerate(q):
+        one = robot.components(row)
+        assert np.array_equal(parts.position[k], one.position)
+        assert np.array_equal(parts.attitude[k], one.attitude)
+        assert {name: values[k] for name, values in parts.joints.items()} == one.joints
+    assert robot.components(q[:0]).position.shape == (0, 3)
+    q[3, 3:7] = 0.0
+    with pytest.raises(fp.InvalidInput, match=r"q\[3\] \(base quaternion\)"):
+        robot.components(q)
+
+
+def test_a_robot_is_printed_in_one_line(robot):
+    assert repr(robot) == "SpaceRobot('planar_dual_arm': 6 joints, 7.4 kg, 7 links)"
+    html = robot._repr_html_()
+    assert html.startswith("<table>")
+    assert "left_1" in html
+    assert "7.4 kg" in html
+    assert len(html) < 1000
 
 
 def test_adjacent_links_are_no_self_collision_pairs(robot):

@@ -93,7 +93,7 @@ def test_an_srdf_is_read_from_its_file_and_kept_in_the_plan(tmp_path):
 FOLDED = {"j1": 2.1, "j2": 2.1, "j3": 2.0}  # a triangle: the last cube lies on the base
 
 
-def test_links_that_touch_with_leave_pass_planning_and_verification():
+def test_exempt_links_that_touch_can_be_planned_and_verified():
     tied = robot_from_urdf(CHAIN, "made", srdf=srdf(("base", "c")))
     for robot, touches in ((tied, False), (robot_from_urdf(CHAIN, "made"), True)):
         start, goal = (robot.configuration((x, 0, 0), joints=FOLDED) for x in (0, 3))
@@ -139,7 +139,7 @@ SWEPT = urdf(
 )
 
 
-def test_an_arm_is_kept_clear_of_what_is_bolted_to_the_bus():
+def test_an_arm_avoids_panels_on_fixed_joints():
     """A panel on a fixed joint belongs to the bus, and is still no neighbour of the arm."""
     robot = robot_from_urdf(SWEPT, "swept")
     assert planned_pairs(robot) == checked_pairs(robot) == {frozenset(("panel", "arm"))}

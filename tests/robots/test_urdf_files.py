@@ -44,58 +44,97 @@ ROWS = {
     "mass of zero": (robot_file(inertial(0.0, (1.0, 1.0, 1.0))), "'arm', mass", "0", "greater"),
     "negative mass": (robot_file(inertial(-1.0, (1.0, 1.0, 1.0))), "'arm', mass", "-1", "greater"),
     "indefinite inertia": (
-        robot_file(inertia_of(-0.1, 0.2, 0.2)), "'arm', inertia", "-0.1", ">= 0",
+        robot_file(inertia_of(-0.1, 0.2, 0.2)),
+        "'arm', inertia",
+        "-0.1",
+        ">= 0",
     ),
     "product too large": (
-        robot_file(inertia_of(0.1, 0.1, 0.15, ixy=0.2)), "'arm', inertia", "-0.1", ">= 0",
+        robot_file(inertia_of(0.1, 0.1, 0.15, ixy=0.2)),
+        "'arm', inertia",
+        "-0.1",
+        ">= 0",
     ),
     "triangle inequality": (
-        robot_file(inertia_of(0.1, 0.1, 0.5)), "'arm', inertia", "0.5", "less than the third",
+        robot_file(inertia_of(0.1, 0.1, 0.5)),
+        "'arm', inertia",
+        "0.5",
+        "less than the third",
     ),
     "mass that is not a number": (
-        robot_file(inertial(float("nan"), (1.0, 1.0, 1.0))), "'arm', mass", "nan", "finite",
+        robot_file(inertial(float("nan"), (1.0, 1.0, 1.0))),
+        "'arm', mass",
+        "nan",
+        "finite",
     ),
     "mass in words": (
-        robot_file(GOOD.replace("'2.0'", "'two kilograms'")), "'arm', mass", "two", "finite",
+        robot_file(GOOD.replace("'2.0'", "'two kilograms'")),
+        "'arm', mass",
+        "two",
+        "finite",
     ),
     "infinite inertia": (
-        robot_file(inertial(1.0, (float("inf"), 1.0, 1.0))), "'arm', ixx", "inf", "finite",
+        robot_file(inertial(1.0, (float("inf"), 1.0, 1.0))),
+        "'arm', ixx",
+        "inf",
+        "finite",
     ),
     "missing mesh": (
         robot_file(shape="<collision><geometry><mesh filename='gone.stl'/></geometry></collision>"),
-        "'arm', collision mesh", "gone.stl", "file",
+        "'arm', collision mesh",
+        "gone.stl",
+        "file",
     ),
     "cycle": (
         robot_file(tail=link("c", GOOD) + joint("k", "revolute", "arm", "base", (1, 0, 0))),
-        "joints", "base", "carry each other",
+        "joints",
+        "base",
+        "carry each other",
     ),
     "detached cycle": (
         robot_file(
-            tail=link("c", GOOD) + link("d", GOOD)
+            tail=link("c", GOOD)
+            + link("d", GOOD)
             + joint("k", "revolute", "c", "d", (1, 0, 0))
             + joint("l", "revolute", "d", "c", (1, 0, 0))
         ),
-        "joints", "c", "carry each other",
+        "joints",
+        "c",
+        "carry each other",
     ),
     "two roots": (robot_file(tail=link("c", GOOD)), "root links", "'c'", "one link"),
     "two links of one name": (robot_file(tail=link("arm", GOOD)), "'arm', name", "arm", "one link"),
     "zero axis": (robot_file(hinge=hinge(axis=(0.0, 0.0, 0.0))), "'j', axis", "0.0", "length 1"),
     "long axis": (robot_file(hinge=hinge(axis=(0.0, 0.0, 2.0))), "'j', axis", "2.0", "length 1"),
     "swapped limits": (
-        robot_file(hinge=hinge(("lower='-3.0'", "lower='4.0'"))), "'j', limit", "4.0", "less than",
+        robot_file(hinge=hinge(("lower='-3.0'", "lower='4.0'"))),
+        "'j', limit",
+        "4.0",
+        "less than",
     ),
     "negative box": (
-        robot_file(shape=box((0.5, -0.5, 0.5))), "box, size", "-0.5", "greater than 0",
+        robot_file(shape=box((0.5, -0.5, 0.5))),
+        "box, size",
+        "-0.5",
+        "greater than 0",
     ),
     "unknown shape": (
         robot_file(shape="<collision><geometry><cone/></geometry></collision>"),
-        "'arm', collision", "cone", "box",
+        "'arm', collision",
+        "cone",
+        "box",
     ),
     "mimic joint": (
-        robot_file(hinge=hinge(("</joint>", "<mimic joint='j'/></joint>"))), "'j'", "mimic", "move",
+        robot_file(hinge=hinge(("</joint>", "<mimic joint='j'/></joint>"))),
+        "'j'",
+        "mimic",
+        "move",
     ),
     "unknown joint type": (
-        robot_file(hinge=hinge(("'revolute'", "'ball'"))), "'j', type", "ball", "revolute",
+        robot_file(hinge=hinge(("'revolute'", "'ball'"))),
+        "'j', type",
+        "ball",
+        "revolute",
     ),
     "not XML": ("a robot, honestly", "", "syntax error", "well-formed XML"),
     "empty": ("", "", "no element", "well-formed XML"),
@@ -105,11 +144,11 @@ ROWS = {
     "external entity": (STOLEN + robot_file(), "", "DOCTYPE", "plain XML"),
     "a chain of 20 000 links": (chain(20_000), "links", "20000", "1 to 1000"),
     "a chain too deep": (chain(700), "links", "699 joints", "at most 500"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", ROWS)
-def test_a_file_that_cannot_be_meant_is_refused_with_part_value_and_what_is_allowed(name, tmp_path):
+def test_a_faulty_urdf_is_refused_with_part_and_value(name, tmp_path):
     text, part, value, allowed = ROWS[name]
     path = tmp_path / "broken_robot.urdf"
     path.write_text(text)
@@ -124,7 +163,7 @@ def test_a_file_that_cannot_be_meant_is_refused_with_part_value_and_what_is_allo
     assert "/include/" not in said
 
 
-def test_the_file_that_is_changed_above_is_a_working_robot():
+def test_the_urdf_without_faults_is_a_working_robot():
     robot = robot_from_urdf(robot_file(), "made")
     assert robot.joint_names == ("j",)
     assert sum(body.mass for body in robot.model.inertias) == pytest.approx(4.0)

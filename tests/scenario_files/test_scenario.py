@@ -1,4 +1,4 @@
-"""Scenario files: what is read, and what each mistake in them is answered with."""
+"""Reading of scenario files, and the error for each mistake in them."""
 
 import re
 
@@ -40,22 +40,24 @@ def write(tmp_path, text):
 
 
 def test_a_scenario_is_read_as_written(tmp_path, robot):
-    title, problem, planner, seed, refine = fp.read_scenario(write(tmp_path, GOOD))
-    assert title == "one sphere"
+    scenario = fp.Scenario.load(write(tmp_path, GOOD))
+    problem = scenario.problem
+    assert scenario.title == "one sphere"
     assert problem.mode == "free-flying"
     assert np.array_equal(problem.start, robot.configuration(joints={"left_1": 0.2}))
     assert np.array_equal(problem.goal, robot.configuration((6, 0, 0)))
     assert problem.lattice == fp.Lattice(12, fp.Axis(6, 0.3))
     assert (problem.delta, problem.length_unit, problem.clearance_cap) == (2.0, 0.1, None)
-    assert planner == fp.AntSystem(ants=8, rho=0.7)
-    assert seed == 5
-    assert refine
+    assert scenario.planner == fp.AntSystem(ants=8, rho=0.7)
+    assert scenario.seed == 5
+    assert scenario.refine is None
+    assert repr(scenario).startswith("Scenario('one sphere', Problem(robot=planar_dual_arm, ")
     assert fp.load_scenario(write(tmp_path, GOOD)).delta == 2.0
 
 
 @pytest.mark.parametrize("path", sorted(folder("scenarios").glob("*.toml")), ids=lambda p: p.stem)
 def test_every_bundled_scenario_reads_by_name_and_by_path(path):
-    by_name, by_path = fp.read_scenario(path.stem), fp.read_scenario(path)
+    by_name, by_path = fp.Scenario.load(path.stem), fp.Scenario.load(path)
     assert by_name.title == by_path.title
     assert np.array_equal(by_name.problem.goal, by_path.problem.goal)
 
@@ -98,7 +100,11 @@ MISTAKES = [
     ("[start]", 'mode = "floating"\n[start]', r"mode.*free-flying, attitude-held"),
     ('"ant-system"', '"ants"', r"planner\.name.*did you mean 'ant-system'"),
     ("[6, 0, 0]", "[6, 0, 0]\nattitude = [0.1, 0, 0]", r"goal\.attitude.*follows from the arms"),
-    ("rho = 0.7", "patience = 3", r"planner \(ant-system\).*patience"),
+    (
+        "rho = 0.7",
+        "patience = 3",
+        r"unknown key: got 'planner\.patience'; allowed: planner\.seed, .*planner\.Q, planner\.C$",
+    ),
     ("title = ", "title == ", r"a TOML file"),
 ]
 
@@ -127,9 +133,9 @@ def test_clouds_add_up_and_may_be_empty(tmp_path):
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ("count = -1", r"clouds\.1: cloud count: got -1"),
+        ("count = -1", r"clouds\.1\.count: got -1"),
         ("count = 2\nspared = 99.0", r"clouds\.1: cloud spared: got '99 m about \(0, 0, 0\); 99 m"),
-        ("count = 2\nspared = -1.0", r"clouds\.1: cloud spared: got -1"),
+        ("count = 2\nspared = -1.0", r"clouds\.1\.spared: got -1"),
         ("count = 2.5", r"clouds\.1\.count: got 2\.5"),
     ],
 )
@@ -143,11 +149,59 @@ def test_a_mistake_in_a_scenario_is_named(tmp_path, right, wrong, message):
     assert right in GOOD
     path = write(tmp_path, GOOD.replace(right, wrong))
     with pytest.raises(fp.InvalidInput) as caught:
-        fp.read_scenario(path)
+        fp.Scenario.load(path)
     assert re.search(message, str(caught.value)), str(caught.value)
     assert "scenario" in str(caught.value)
 
 
-def test_a_scenario_that_does_not_exist_is_answered_with_the_bundled_ones():
+def test_a_missing_scenario_is_answered_with_the_bundled_ones():
     with pytest.raises(fp.InvalidInput, match="fig2a, fig2b"):
-        fp.read_scenario("fig3")
+        fp.Scenario.load("fig3")
+
+
+def test_without_a_name_the_planner_is_that_of_the_lattice(tmp_path):
+    text = GOOD.replace('name = "ant-system"\n', "").replace("ants = 8\nrho = 0.7\n", "")
+    scenario = fp.Scenario.load(write(tmp_path, text))
+    assert scenario.planner is None
+    assert scenario.seed == 5
+
+
+def test_settings_without_a_name_are_of_the_max_min_ant_system(tmp_path):
+    text = GOOD.replace('name = "ant-system"\n', "")
+    scenario = fp.Scenario.load(write(tmp_path, text))
+    assert scenario.planner == fp.MaxMinAntSystem(ants=8, rho=0.7)
+
+
+def test_start_and_goal_may_name_a_posture(tmp_path, robot):
+    text = GOOD.replace(
+        "joints = { left_1 = 0.2 }", "posture = 'stowed'\njoints = { left_1 = 0.2 }"
+    )
+    text = text.replace("[6, 0, 0]", "[6, 0, 0]\nposture = 'spread'")
+    problem = fp.load_scenario(write(tmp_path, text))
+    stowed = {**robot.postures["stowed"], "left_1": 0.2}
+    assert np.array_equal(problem.start, robot.configuration(joints=stowed))
+    spread = robot.configuration((6, 0, 0), joints=robot.postures["spread"])
+    assert np.array_equal(problem.goal, spread)
+
+
+def test_an_unknown_posture_is_named_with_the_nearest_one(tmp_path):
+    text = GOOD.replace("joints = { left_1 = 0.2 }", "posture = 'stowd'")
+    with pytest.raises(fp.InvalidInput, match=r"start: posture.*did you mean 'stowed'"):
+        fp.load_scenario(write(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("axis", "message"),
+    [
+        ('{ towards = "stowed" }', r"lattice\.postures\.0\.levels.*required"),
+        ("{ levels = 3 }", r"lattice\.postures\.0\.towards.*required"),
+        ('{ towards = "stowed", levels = 0 }', r"lattice\.postures\.0\.levels.*at least 1"),
+        ('{ towrds = "stowed" }', r"did you mean 'lattice\.postures\.0\.towards'"),
+        ('{ towards = "stowed", joints = {} }', r"lattice\.postures\.0: got 'joints, towards'"),
+        ('{ towards = "stowd", levels = 3 }', r"postures, towards.*did you mean 'stowed'"),
+    ],
+)
+def test_a_mistake_in_a_posture_axis_is_named(tmp_path, axis, message):
+    text = GOOD.replace("divisions = 12", f"divisions = 12\npostures = [{axis}]")
+    with pytest.raises(fp.InvalidInput, match=message):
+        fp.load_scenario(write(tmp_path, text))

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from dataclasses import fields
 
 import jsonschema
 import pytest
@@ -54,6 +55,9 @@ WRONG = [
     ("[start]", 'mode = "floating"\n[start]'),
     ("seed = 5", "seed = true"),
     ("[lattice]", '[[obstacles]]\nmesh = "station.stl"\n[lattice]'),
+    ("rho = 0.7", "patience = 3"),
+    ("rho = 0.7", "rho = 1.0"),
+    ("divisions = 12", "divisions = 1"),
 ]
 
 
@@ -67,8 +71,10 @@ def test_wrong_scenarios_are_not(validator, right, wrong):
 
 def test_every_table_says_what_it_is(validator):
     tables = validator.schema["$defs"]
-    for table in tables.values():
-        assert table["description"].startswith(("The table", "An entry"))
-    assert set(validator.schema["properties"]) == set(ScenarioFile.model_fields)
+    for name, table in tables.items():
+        described = {key for key, entry in table["properties"].items() if "description" in entry}
+        assert table["description"].endswith((".", "`."))
+        assert described == set(table["properties"]) - {"name"}, name
+    assert set(validator.schema["properties"]) == {each.name for each in fields(ScenarioFile)}
     position = tables["EndEffectorTable"]["properties"]["position"]
-    assert position["description"] == "Of the frame's origin, world [m]."
+    assert position["description"] == "(3,) wanted for the frame's origin, world [m]."

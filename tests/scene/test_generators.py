@@ -13,7 +13,7 @@ BOX = {"low": (0, -2, -2), "high": (10, 2, 2), "radii": (0.02, 0.3)}
 
 
 @given(st.integers(0, 2**31), st.integers(0, 300))
-def test_a_cloud_has_the_spheres_that_were_asked_for_where_they_were_asked_for(seed, count):
+def test_a_cloud_has_the_requested_number_and_place(seed, count):
     balls = [((0, 0, 0), 1.0), ((10, 0, 0), 1.5)]
     scene = cloud(seed, count, **BOX, spared=balls)
     assert len(scene) == count
@@ -30,7 +30,7 @@ def test_a_cloud_is_the_same_for_the_same_seed_only():
     assert not np.array_equal(first.centers, other.centers)
 
 
-def test_small_spheres_are_as_many_as_large_ones_on_a_logarithmic_scale():
+def test_radii_are_uniform_on_a_logarithmic_scale():
     radii = cloud(0, 4000, **BOX).radii
     assert np.median(radii) == pytest.approx(np.sqrt(0.02 * 0.3), rel=0.1)
 
@@ -46,7 +46,7 @@ def test_small_spheres_are_as_many_as_large_ones_on_a_logarithmic_scale():
         ({"spared": [((5, 0, 0), 50.0)]}, r"cloud spared: got '50 m about \(5, 0, 0\)'"),
     ],
 )
-def test_a_cloud_that_cannot_be_is_refused_by_name(wrong, named):
+def test_an_impossible_cloud_is_refused_by_name(wrong, named):
     with pytest.raises(fp.InvalidInput, match=named):
         cloud(**{"seed": 0, "count": 10, **BOX, **wrong})
 
@@ -65,7 +65,7 @@ def in_the_ring(scene):
 
 
 @given(st.integers(0, 2**31), st.integers(0, 300))
-def test_a_belt_lies_in_its_ring_and_spares_what_it_has_to(seed, count):
+def test_a_belt_lies_in_its_ring_and_outside_spared_balls(seed, count):
     ball = (PLACE["center"] + matrix(from_angles(np.array(PLACE["attitude"])))[:, 0] * 5.0, 1.2)
     scene = belt(seed, count, **RING, **PLACE, arc=(-1.0, 2.0), spared=[ball])
     assert len(scene) == count
@@ -138,7 +138,7 @@ def test_struts_of_a_truss_lie_in_its_spheres_and_nothing_else_does(begin, end):
         (scatter, FEW, {"radii": (0, 1)}, "scatter radii"),
     ],
 )
-def test_other_scenes_that_cannot_be_are_refused_by_name(make, good, wrong, named):
+def test_other_impossible_scenes_are_refused_by_name(make, good, wrong, named):
     make(**good)
     with pytest.raises(fp.InvalidInput, match=named):
         make(**{**good, **wrong})

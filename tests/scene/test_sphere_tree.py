@@ -55,7 +55,7 @@ def all_pairs(robot, scene, q):
 
 @given(seeds, st.sampled_from([1, 4, 30, 150]))
 @settings(max_examples=60)
-def test_the_search_finds_what_a_look_at_all_pairs_finds(seed, count):
+def test_the_search_agrees_with_all_pairs(seed, count):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     scene = mixed_scene(rng, count)
     q = np.array([random_configuration(robot, rng, spread=3.0) for _ in range(6)])
@@ -72,7 +72,7 @@ def test_the_search_finds_what_a_look_at_all_pairs_finds(seed, count):
         near = query.nearest_at(placed, k // 2, shift)
         links = [robot.link_of(g) for g in robot.collision_model.geometryObjects]
         named = [i for i, name in enumerate(links) if name == near.link]
-        assert each[named, near.other].min() == pytest.approx(each.min(), abs=1e-9)
+        assert each[named, near.obstacle].min() == pytest.approx(each.min(), abs=1e-9)
 
 
 def test_ten_thousand_spheres_give_the_same_clearance_as_all_pairs(robot):

@@ -148,7 +148,7 @@ def test_a_start_that_is_the_goal_is_nothing_to_reach(robot):
         fp.Problem(**arguments(robot, goal=turned, lattice=fp.Lattice(4)))
 
 
-def test_the_same_attitude_with_the_other_sign_is_nothing_to_reach(robot):
+def test_an_opposite_quaternion_is_the_same_attitude(robot):
     opposite = np.array(robot.neutral())
     opposite[3:7] *= -1
     with pytest.raises(fp.InvalidInput, match="differs from the start"):
@@ -163,7 +163,7 @@ def test_a_lateral_axis_needs_a_direction_of_travel(robot):
 @pytest.mark.parametrize(
     ("behind", "error"), [(-0.5, fp.StartInCollision), (9.5, fp.GoalInCollision)]
 )
-def test_a_start_or_goal_in_collision_names_link_obstacle_and_depth(robot, behind, error):
+def test_start_or_goal_in_collision_names_link_and_obstacle(robot, behind, error):
     scene = fp.Scene([[5, 3, 0], [behind, 0, 0]], [0.5, 0.3])
     with pytest.raises(error, match=r"link 'base' is 0\.05\d* m inside obstacle 1") as caught:
         fp.plan(fp.Problem(**arguments(robot, scene=scene)))
@@ -191,10 +191,10 @@ def test_obstacles_that_close_every_way_are_named(robot):
     assert caught.value.obstacles
 
 
-def test_what_is_no_planner_or_no_seed_is_refused(robot):
+def test_an_unknown_planner_or_a_wrong_seed_is_refused(robot):
     problem = fp.Problem(**arguments(robot))
     with pytest.raises(fp.InvalidInput, match="planner"):
-        fp.plan(problem, planner="ant-system")
+        fp.plan(problem, planner="ants")
     for seed in (-1, 1.5, "0"):
         with pytest.raises(fp.InvalidInput, match="seed"):
             fp.plan(problem, seed=seed)
@@ -240,7 +240,7 @@ def test_huge_numbers_are_refused_before_they_reach_coal(robot):
         fp.MaxMinAntSystem(beta=1e6)
 
 
-def test_a_lattice_too_large_for_the_memory_is_refused_with_its_size(robot):
+def test_a_lattice_too_large_for_memory_is_refused_with_its_size(robot):
     huge = fp.Lattice(40, fp.Axis(100_000, 1e-4))
     with pytest.raises(fp.InvalidInput, match="200001 nodes a layer and 40 divisions"):
         fp.plan(fp.Problem(**arguments(robot, lattice=huge)))
@@ -249,7 +249,7 @@ def test_a_lattice_too_large_for_the_memory_is_refused_with_its_size(robot):
 
 
 def test_things_of_another_kind_are_refused_by_name(robot):
-    scenario = fp.read_scenario("fig2a")
+    scenario = fp.Scenario.load("fig2a")
     cases = {
         "problem": [lambda: fp.plan(scenario), lambda: fp.plan(None), lambda: fp.plan("fig2a")],
         "joints": [lambda: robot.configuration(joints=[1, 2])],
@@ -268,7 +268,7 @@ def test_things_of_another_kind_are_refused_by_name(robot):
                 call()
 
 
-def test_a_file_that_cannot_be_written_is_named_and_nothing_is_left_behind(fig2a_plan, tmp_path):
+def test_an_unwritable_file_is_named_and_leaves_nothing_behind(fig2a_plan, tmp_path):
     with pytest.raises(fp.InvalidInput, match="nowhere"):
         fig2a_plan.save(tmp_path / "nowhere" / "plan.json")
     with pytest.raises(fp.InvalidInput, match=str(tmp_path)):

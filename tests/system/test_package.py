@@ -41,7 +41,7 @@ OUTSIDE = """
 import ffsr_plan as fp, pathlib, sys
 assert pathlib.Path(fp.__file__).is_relative_to(sys.prefix), fp.__file__
 assert fp.robot_names() == ["planar_dual_arm", "point", "satellite_ur5", "spatial_dual_arm"]
-scenario = fp.read_scenario("fig2b")
+scenario = fp.Scenario.load("fig2b")
 plan = fp.plan(scenario.problem, fp.AntSystem(cycles=2), 0)
 assert plan.verify(20).ok
 plan.write_html("plan.html")

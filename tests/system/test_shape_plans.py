@@ -97,13 +97,13 @@ def test_a_plan_loads_and_verifies_without_its_mesh_files(arm_plan, tmp_path):
     ],
 )
 def test_a_plan_file_that_misstates_its_replacements_is_refused(arm_plan, tmp_path, change):
-    from ffsr_plan.plans.plan_file import from_dict, to_dict
+    from ffsr_plan.plans.plan_file import to_dict
 
     data = to_dict(arm_plan)
-    assert from_dict(data) == arm_plan
+    assert fp.Plan.from_dict(data) == arm_plan
     change(data["problem"]["robot"]["replacements"])
     with pytest.raises(fp.InvalidInput, match="replacements"):
-        from_dict(data)
+        fp.Plan.from_dict(data)
 
 
 def test_verification_notices_a_replacement_that_does_not_hold_the_original(arm_plan):

@@ -167,7 +167,7 @@ def test_a_dictionary_goes_through_json_and_gives_the_same_plan(plan, tmp_path):
     assert saved == json.loads(json.dumps(data))
 
 
-@pytest.mark.parametrize("data", [None, [], {}, {"format": "ffsr-plan/2"}, {"format": "other"}])
+@pytest.mark.parametrize("data", [None, [], {}, {"format": "ffsr-plan/3"}, {"format": "other"}])
 def test_dictionaries_that_are_no_plan_are_refused(data):
     with pytest.raises(fp.InvalidInput, match="plan"):
         fp.Plan.from_dict(data)

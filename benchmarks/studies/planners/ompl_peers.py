@@ -40,7 +40,7 @@ class Plane:
         self.problem, axis = problem, problem.lattice.lateral
         lattice = fp.LayeredLattice(problem)
         self.nominal, self.aside = lattice.nominal, lattice.directions[0]
-        self.along = float(np.linalg.norm(problem.travel))
+        self.along = float(np.linalg.norm(problem.base_displacement))
         self.window = axis.half_count * axis.spacing
         self.bodies = Bodies(problem.robot.urdf)
         self.query = ObstacleQuery(problem.robot, problem.scene)

@@ -1,10 +1,13 @@
 const byId = id => document.getElementById(id);
 const viewer = new MeshCat.Viewer(byId("meshcat-pane"));
-for (const command of data.commands) {
-  viewer.handle_command_bytearray(Uint8Array.from(atob(command), c => c.charCodeAt(0)));
+function run(commands) {
+  for (const command of commands) {
+    viewer.handle_command_bytearray(Uint8Array.from(atob(command), c => c.charCodeAt(0)));
+  }
 }
+run(data.commands);
 
-// Stand far enough away for the whole scene at this aspect ratio, the play bar left free.
+// Place the camera so that the whole scene is seen at this aspect ratio above the bar.
 function fit() {
   const rise = data.view.elevation, half = Math.tan(data.view.fov * Math.PI / 360);
   const aspect = window.innerWidth / window.innerHeight;
@@ -19,3 +22,7 @@ window.addEventListener("resize", fit);
 
 byId("title").querySelector("h1").textContent = data.title;
 byId("title").querySelector("p").textContent = data.subtitle;
+for (const box of document.querySelectorAll("#show input")) {
+  box.onchange = () =>
+    viewer.set_property(["meshcat", box.dataset.path], "visible", box.checked);
+}

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
-from ffsr_plan.core.checks import number, whole_number
 from ffsr_plan.core.errors import InternalError, PlanningError
-from ffsr_plan.core.kernels import call
+from ffsr_plan.core.rules import Number, WholeNumber
+from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
@@ -18,7 +17,7 @@ from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult
 _LEAST_PHEROMONE = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
 
 
-@dataclass(frozen=True)
+@settings
 class AntSystem(LatticePlanner):
     """The paper's planner.
 
@@ -40,26 +39,13 @@ class AntSystem(LatticePlanner):
 
     name: ClassVar[str] = "ant-system"
 
-    ants: int = 30
-    cycles: int = 242
-    alpha: float = 1.0
-    beta: float = 5.0
-    rho: float = 0.526
-    Q: float = 320.0
-    C: float = 10.0
-
-    def __post_init__(self) -> None:
-        checked = {
-            "ants": whole_number("ants", self.ants, at_least=1, at_most=100_000),
-            "cycles": whole_number("cycles", self.cycles, at_least=1),
-            "alpha": number("alpha", self.alpha, at_least=0.0),
-            "beta": number("beta", self.beta, at_least=0.0),
-            "rho": number("rho", self.rho, above=0.0, below=1.0),
-            "Q": number("Q", self.Q, above=0.0),
-            "C": number("C", self.C, above=0.0),
-        }
-        for field, value in checked.items():
-            object.__setattr__(self, field, value)
+    ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
+    cycles: Annotated[int, WholeNumber(at_least=1)] = 242
+    alpha: Annotated[float, Number(at_least=0.0)] = 1.0
+    beta: Annotated[float, Number(at_least=0.0)] = 5.0
+    rho: Annotated[float, Number(above=0.0, below=1.0)] = 0.526
+    Q: Annotated[float, Number(above=0.0)] = 320.0
+    C: Annotated[float, Number(above=0.0)] = 10.0
 
     def search(
         self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None
@@ -149,11 +135,20 @@ class Walk:
         self._changed[:] = True
         ant, layer = 0, -1
         while True:
-            ant, layer = call(
-                walk, self._rng, tau, self._alpha, self._log_visibility, self._open_edges,
-                self._open_counts, roadmap.status, self._roulettes, self._changed,
-                paths, ant, layer,
-            )  # fmt: skip
+            ant, layer = walk(
+                self._rng,
+                tau,
+                self._alpha,
+                self._log_visibility,
+                self._open_edges,
+                self._open_counts,
+                roadmap.status,
+                self._roulettes,
+                self._changed,
+                paths,
+                ant,
+                layer,
+            )
             if ant == len(paths):
                 return paths
             if ant < 0:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States
+from ffsr_plan.core.kernels import kernel
 from ffsr_plan.lattice.edge_states import FREE
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _fill_roulette(roulette: Array, log_weight: Array, open_row: Flags) -> None:
     """Cumulative weights of one row, scaled by the largest: only ratios count."""
     largest = -np.inf
@@ -23,7 +23,7 @@ def _fill_roulette(roulette: Array, log_weight: Array, open_row: Flags) -> None:
         roulette[k] = total
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def walk(
     rng: np.random.Generator,
     tau: Array,

@@ -9,9 +9,9 @@ member.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.kernels import kernel
 
 _LEAST_GAIN = 1e-12  # relative improvement that counts
 
@@ -49,7 +49,7 @@ def neighbourhood(indices: IntArray, wide: bool) -> IntArray:
     return np.stack(columns, axis=1)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def path_cost(path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags) -> float:
     """F of a path, infinite if one of its edges is closed."""
     total = 0.0
@@ -60,7 +60,7 @@ def path_cost(path: IntArray, edge_costs: Array, node_costs: Array, open_edges: 
     return total
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _best_neighbour(
     path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags, table: IntArray
 ) -> float:
@@ -94,7 +94,7 @@ def _best_neighbour(
     return float(costs[m, 0])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags) -> float:
     """Move the node of each layer in turn to the best one between its neighbours; the gain in F."""
     m, n = len(path) - 1, len(edge_costs)
@@ -112,7 +112,7 @@ def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, open_edges
     return gain
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def improve(
     path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags, table: IntArray
 ) -> float:

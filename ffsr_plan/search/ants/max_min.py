@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
-from ffsr_plan.core.checks import number, truth, whole_number
 from ffsr_plan.core.errors import InternalError, PlanningError
-from ffsr_plan.core.kernels import call
+from ffsr_plan.core.rules import Number, Truth, WholeNumber
+from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
@@ -23,7 +22,7 @@ _MOST_TRAILS = 10_000  # edges whose trails are kept for pictures
 _CYCLES_PER_TIME_CHECK = 16  # cycles between two checks of the time
 
 
-@dataclass(frozen=True)
+@settings
 class MaxMinAntSystem(LatticePlanner):
     """A max-min ant system (Stuetzle and Hoos 2000) with local search: the default planner.
 
@@ -47,30 +46,14 @@ class MaxMinAntSystem(LatticePlanner):
 
     name: ClassVar[str] = "max-min-ant-system"
 
-    ants: int = 30
-    cycles: int = 242
-    beta: float | None = None
-    rho: float = 0.7
-    improved: int = 1
-    patience: int = 20
-    cost_aware: bool = True
-    pheromone: bool = True
-
-    def __post_init__(self) -> None:
-        checked = {
-            "ants": whole_number("ants", self.ants, at_least=1, at_most=100_000),
-            "cycles": whole_number("cycles", self.cycles, at_least=1),
-            "beta": None
-            if self.beta is None
-            else number("beta", self.beta, at_least=0.0, at_most=40.0),
-            "rho": number("rho", self.rho, above=0.0, below=1.0),
-            "improved": whole_number("improved", self.improved, at_least=0),
-            "patience": whole_number("patience", self.patience, at_least=0),
-            "cost_aware": truth("cost_aware", self.cost_aware),
-            "pheromone": truth("pheromone", self.pheromone),
-        }
-        for field, value in checked.items():
-            object.__setattr__(self, field, value)
+    ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
+    cycles: Annotated[int, WholeNumber(at_least=1)] = 242
+    beta: Annotated[float, Number(at_least=0.0, at_most=40.0)] | None = None
+    rho: Annotated[float, Number(above=0.0, below=1.0)] = 0.7
+    improved: Annotated[int, WholeNumber(at_least=0)] = 1
+    patience: Annotated[int, WholeNumber(at_least=0)] = 20
+    cost_aware: Annotated[bool, Truth()] = True
+    pheromone: Annotated[bool, Truth()] = True
 
     def search(
         self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None
@@ -126,7 +109,7 @@ class MaxMinAntSystem(LatticePlanner):
                 raise roadmap.no_path() or InternalError(
                     "no open edge at the start, but the roadmap has a path"
                 )
-            outcome = call(kernel.run_cycles, rng, until, state)
+            outcome = kernel.run_cycles(rng, until, state)
             if outcome == kernel.DONE:
                 return
             if roadmap.prove_path(state.candidate):
@@ -196,7 +179,7 @@ class MaxMinAntSystem(LatticePlanner):
 def _report(state: State, cycles: int) -> Cycle:
     from ffsr_plan.search.ants.max_min_kernels import CYCLE, write_untouched_rows
 
-    call(write_untouched_rows, state)
+    write_untouched_rows(state)
     number = int(state.counters[CYCLE])
     best, iteration_best, mean, distinct = map(float, state.records[number - 1])
     counts = np.zeros(state.node_costs.shape, dtype=np.int64)
@@ -209,7 +192,7 @@ def _trails(state: State) -> Trails:
     """The most walked edges, in the order of layers and nodes."""
     from ffsr_plan.search.ants.max_min_kernels import write_untouched_rows
 
-    call(write_untouched_rows, state)
+    write_untouched_rows(state)
     used = np.flatnonzero(state.walked)
     if len(used) > _MOST_TRAILS:
         ants = state.walked.ravel()[used]

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States
+from ffsr_plan.core.kernels import kernel
 from ffsr_plan.lattice.edge_states import FREE
 from ffsr_plan.search.ants.local_search_kernels import improve, path_cost
 
@@ -84,7 +84,7 @@ class State(NamedTuple):
     """(m, n, n) pheromone laid."""
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _walk(rng: np.random.Generator, s: State) -> None:
     """All ants from start to goal, each row of weights summed up once a cycle at most.
 
@@ -126,13 +126,13 @@ def _walk(rng: np.random.Generator, s: State) -> None:
         s.costs[ant] = cost
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _among(searched: Array, cost: float) -> bool:
     """Whether a path is, by its cost, one that local search came back with lately."""
     return bool(np.any(np.abs(searched - cost) <= 1e-12 * cost))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _improve(s: State) -> None:
     """Local search on the best walk and on some that went elsewhere, then on the best of all."""
     ants, improved = len(s.paths), s.improved
@@ -157,7 +157,7 @@ def _improve(s: State) -> None:
         s.searched_wide[s.counters[CYCLE] % len(s.searched_wide)] = cost
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _reevaluate(s: State) -> None:
     """Cost the paths again after edges were closed; local search on the refused candidate."""
     for ant in range(len(s.paths)):
@@ -167,7 +167,7 @@ def _reevaluate(s: State) -> None:
             s.costs[ant] = improve(s.paths[ant], s.edge_costs, s.node_costs, s.open_edges, s.near)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _is_proven(path: IntArray, status: States) -> bool:
     free = 0
     for i in range(len(path) - 1):
@@ -175,7 +175,7 @@ def _is_proven(path: IntArray, status: States) -> bool:
     return free == len(path) - 1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _update_pheromone(s: State) -> None:
     """Let tau sink to max(rho tau, least); one path lays 1 - rho, up to 1 in all."""
     rho, least, tau, touched = s.rho, s.least_pheromone, s.tau, s.touched
@@ -196,7 +196,7 @@ def _update_pheromone(s: State) -> None:
         s.laid[i, chosen[i], head] += 1.0 - rho
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def write_untouched_rows(s: State) -> None:
     """Write the level of untouched rows into tau, for readers; the cycles do so late."""
     for i in range(s.tau.shape[0]):
@@ -205,7 +205,7 @@ def write_untouched_rows(s: State) -> None:
                 s.tau[i, p] = s.values[LEVEL]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def run_cycles(rng: np.random.Generator, until: int, s: State) -> int:
     """Go on until cycle `until` is done, or a path must be proven first.
 

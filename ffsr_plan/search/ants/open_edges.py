@@ -9,9 +9,9 @@ node close too.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ffsr_plan.core.arrays import Flags, IntArray, States
+from ffsr_plan.core.kernels import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
 
 
@@ -25,7 +25,7 @@ def find_open_edges(admissible: Flags, status: States) -> tuple[Flags, IntArray]
     return open_edges, np.count_nonzero(open_edges, axis=2)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def close_refused(
     layer: int, status: States, open_edges: Flags, open_counts: IntArray, changed: Flags
 ) -> None:

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.kernels import kernel
 from ffsr_plan.search.postures.cost_kernels import (
     COLLISION_COST,
     CostedPath,
@@ -29,7 +29,7 @@ from ffsr_plan.search.postures.cost_kernels import (
 )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def uncosted_path(path: IntArray) -> CostedPath:
     """A path (m + 1, 2) whose costs are not worked out yet."""
     m = len(path) - 1
@@ -43,14 +43,14 @@ def uncosted_path(path: IntArray) -> CostedPath:
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def least_cost(grid: PostureGrid, clearance: float, change: float, inner: bool) -> float:
     """The least that a node may cost [m] whose clearance changes by `change` at most."""
     cost = node_cost(grid, clearance + change, inner)
     return cost if clearance + change <= 0.0 else min(COLLISION_COST, cost)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def trial_cost(
     grid: PostureGrid,
     current: CostedPath,
@@ -106,7 +106,7 @@ def trial_cost(
     return visit(grid, trial, first, last, total, limit, workspace)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def adopt(current: CostedPath, trial: CostedPath, first: int, last: int) -> None:
     """Make the trial the current path."""
     current.nodes[first:last] = trial.nodes[first:last]
@@ -116,7 +116,7 @@ def adopt(current: CostedPath, trial: CostedPath, first: int, last: int) -> None
     current.costs[first:] = trial.costs[first:]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def shift(
     successors: IntArray,
     neighbours: IntArray,
@@ -151,7 +151,7 @@ def shift(
     return True
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def anneal(
     grid: PostureGrid,
     rng: np.random.Generator,

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.kernels import call
 from ffsr_plan.core.rotations import slerp
 from ffsr_plan.search.postures.annealing_kernels import anneal, uncosted_path
 from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
@@ -65,7 +64,7 @@ class PostureColony:
         self.grid = grid
         m, postures, steps = grid.step_rotations.shape[:3]
         offsets = len(grid.across)
-        self._cost_to_go = call(cost_to_go, grid, _guiding_attitudes(lattice))
+        self._cost_to_go = cost_to_go(grid, _guiding_attitudes(lattice))
         self._offset_pheromone = np.ones((m, offsets, offsets))
         self._posture_pheromone = np.ones((m, postures, steps))
         self._walked = np.zeros((m, offsets, offsets), dtype=np.int64)
@@ -87,7 +86,7 @@ class PostureColony:
     def cost(self, path: IntArray) -> float:
         """Cost of a path (m + 1, 2) [m]."""
         weight = float(self._settings.attitude_weights[1])
-        return float(call(path_cost, self.grid, uncosted_path(path), weight))
+        return float(path_cost(self.grid, uncosted_path(path), weight))
 
     def refuse(self, layer: int, path: IntArray) -> None:
         """Exclude the edge by which a path (m + 1, 2) leaves a layer."""
@@ -111,7 +110,7 @@ class PostureColony:
         self, path: IntArray, shifts: int, hot: float, cold: float, weights: Array
     ) -> tuple[IntArray, float]:
         result = np.empty_like(path)
-        cost = call(anneal, self.grid, self._rng, path, shifts, hot, cold, weights, result)
+        cost = anneal(self.grid, self._rng, path, shifts, hot, cold, weights, result)
         return result, float(cost)
 
     def _run_ants(self, monitor: SearchMonitor) -> bool:
@@ -148,10 +147,15 @@ class PostureColony:
         layers = np.arange(m)
         for _ in range(self._settings.ants):
             path = np.empty((m + 1, 2), dtype=np.int64)
-            if call(
-                walk, self.grid, self._rng, self._cost_to_go, self._settings.detour_scale,
-                self._offset_pheromone, self._posture_pheromone, path,
-            ):  # fmt: skip
+            if walk(
+                self.grid,
+                self._rng,
+                self._cost_to_go,
+                self._settings.detour_scale,
+                self._offset_pheromone,
+                self._posture_pheromone,
+                path,
+            ):
                 paths.append(path)
                 self._walked[layers, path[:-1, 0], path[1:, 0]] += 1
                 costs.append(self.cost(path))
@@ -162,7 +166,7 @@ class PostureColony:
         tables = self._offset_pheromone, self._posture_pheromone
         for pheromone in tables:
             np.maximum(rho * pheromone, least, out=pheromone)
-        call(lay_pheromone, self.grid, 1.0 - rho, path, *tables)
+        lay_pheromone(self.grid, 1.0 - rho, path, *tables)
         self._laid[np.arange(len(path) - 1), path[:-1, 0], path[1:, 0]] += 1.0 - rho
 
     def _run_annealings(self, monitor: SearchMonitor) -> bool:

@@ -12,11 +12,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from ffsr_plan.collision.nearest_kernels import _DEPTH, _search
+from ffsr_plan.collision.nearest_kernels import STACK_SIZE, nearest_sphere
 from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.kernels import kernel
 
 COLLISION_COST = 3.0  # [m] of cost for a collision
 DEPTH_COST = 15.0  # [m] of cost for each metre of its depth
@@ -105,7 +105,7 @@ class CostedPath(NamedTuple):
     """(m + 1,) what the nodes cost at least [m]."""
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def step_between(indices: IntArray, tail: int, head: int) -> int:
     """Which of a posture's steps leads to another one; -1 if none does."""
     step = 0
@@ -117,19 +117,20 @@ def step_between(indices: IntArray, tail: int, head: int) -> int:
     return step
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def new_workspace() -> Workspace:
     """Workspace to work in, for one thread."""
-    return Workspace(np.empty(15), np.zeros(3), np.empty(_DEPTH, np.int32), np.empty(_DEPTH))
+    stack, bounds = np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE)
+    return Workspace(np.empty(15), np.zeros(3), stack, bounds)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def is_free(grid: PostureGrid) -> bool:
     """Whether there are no obstacles, or no shapes that could touch them."""
     return len(grid.obstacles.spheres) == 0 or len(grid.obstacles.kinds) == 0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def clearance_at(
     obstacles: Obstacles,
     frames: Array,
@@ -166,14 +167,14 @@ def clearance_at(
                 + r[a][2] * (own[11] - center[2])
             )
             frame[12 + a] = own[12 + a]
-        least, nearest = _search(
-            obstacles.nodes, obstacles.children, obstacles.spheres, obstacles.kinds[g], frame,
-            workspace.shift, least, nearest, workspace.stack, workspace.bounds,
-        )  # fmt: skip
+        kind, shift = obstacles.kinds[g], workspace.shift
+        least, nearest = nearest_sphere(
+            obstacles, kind, frame, shift, least, nearest, workspace.stack, workspace.bounds
+        )
     return least
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def node_cost(grid: PostureGrid, clearance: float, inner: bool) -> float:
     """Cost [m] of a node: delta / d, or that of a collision."""
     if clearance <= 0.0:
@@ -183,13 +184,13 @@ def node_cost(grid: PostureGrid, clearance: float, inner: bool) -> float:
     return grid.clearance_weight / min(clearance, grid.clearance_cap)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def edge_length(delta_d: float, across: float, squared_step: float) -> float:
     """d_pq of Eq. 6 [m], posture steps included; the latter two squared."""
     return math.sqrt(delta_d * delta_d + across + squared_step)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def compose(p: Array, q: Array, product: Array) -> None:
     """Rotation p q (xyzw)."""
     product[0] = p[3] * q[0] + p[0] * q[3] + p[1] * q[2] - p[2] * q[1]
@@ -198,7 +199,7 @@ def compose(p: Array, q: Array, product: Array) -> None:
     product[3] = p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def angle_to(p: Array, q: Array) -> float:
     """Angle [rad] of the rotation from p to q."""
     x = p[3] * q[0] - p[0] * q[3] - p[1] * q[2] + p[2] * q[1]
@@ -208,7 +209,7 @@ def angle_to(p: Array, q: Array) -> float:
     return 2.0 * math.atan2(math.sqrt(x * x + y * y + z * z), abs(w))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def is_refused(refused: IntArray, layer: int, b: int, p: int, b_on: int, p_on: int) -> bool:
     """Whether an edge has been refused."""
     for k in range(len(refused)):
@@ -218,7 +219,7 @@ def is_refused(refused: IntArray, layer: int, b: int, p: int, b_on: int, p_on: i
     return False
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def attitude_cost(grid: PostureGrid, quat: Array, weight: float) -> float:
     """Cost [m] of the attitude at the goal, a radian of error costing `weight` [m]."""
     if not grid.reach_attitude:
@@ -226,7 +227,7 @@ def attitude_cost(grid: PostureGrid, quat: Array, weight: float) -> float:
     return weight * max(0.0, angle_to(quat, grid.goal) - FREE_ATTITUDE_ERROR)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def take_edges(grid: PostureGrid, path: CostedPath, first: int, last: int) -> bool:
     """Work out the edges first .. last - 1 of a path; whether all of them exist.
 
@@ -250,7 +251,7 @@ def take_edges(grid: PostureGrid, path: CostedPath, first: int, last: int) -> bo
     return True
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def visit(
     grid: PostureGrid,
     path: CostedPath,
@@ -294,7 +295,7 @@ def visit(
     return total
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def path_cost(grid: PostureGrid, path: CostedPath, weight: float) -> float:
     """Cost [m] of a path, all of whose entries are worked out; infinite if an edge does not exist.
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.kernels import call
 from ffsr_plan.core.rotations import IDENTITY, angle_between
 from ffsr_plan.problem.objective import nearness
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
@@ -37,7 +36,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     costs[0, base.origin] = 0.0
     status = np.zeros((m, count, count), dtype=np.int8)
     edges = base.steps[None] / problem.length_unit
-    call(extend, 0, edges, nodes, status, costs, before)
+    extend(0, edges, nodes, status, costs, before)
     return max(float(costs[m, base.origin]), _rotation_bound(lattice) / problem.length_unit)
 
 

@@ -28,13 +28,14 @@ class RefusedEdge(NamedTuple):
     Attributes:
         layer: layer that the edge leaves.
         link: name of the nearest link.
-        obstacle: index of the sphere, or name of the other link.
+        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
+            scene.
         distance: least distance met [m], negative in penetration.
     """
 
     layer: int
     link: str
-    obstacle: int | str
+    obstacle: int | str | None
     distance: float
 
 
@@ -101,7 +102,7 @@ def check_start(problem: Problem) -> None:
     still = np.zeros(3)
     for near in (prover.nearest(0, still, still, 0.0), prover.nearest_links(0, 0.0)):
         if near.distance <= 0.0:
-            raise StartInCollision(near.link, near.other, -near.distance)
+            raise StartInCollision(near.link, near.obstacle, -near.distance)
 
 
 def length_of(lattice: PostureLattice, motion: Motion) -> float:
@@ -133,7 +134,7 @@ def _prove(problem: Problem, positions: Array, joints: Array) -> PathProof:
             near = prover.nearest_links(layer, links.time)
         else:
             continue
-        refused.append(RefusedEdge(layer, near.link, near.other, near.distance))
+        refused.append(RefusedEdge(layer, near.link, near.obstacle, near.distance))
     error = 0.0
     if problem.reach_attitude:
         error = float(angle_between(motion.attitudes[-1], problem.goal[3:7]))

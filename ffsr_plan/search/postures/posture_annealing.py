@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from ffsr_plan.core.arrays import IntArray, frozen
 from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput, UnprovenPath
 from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
@@ -35,7 +35,7 @@ _SHIFTS_AFTER_REFUSAL = 500  # for each layer, in the annealing that goes on aft
 _TEMPERATURES_AFTER_REFUSAL = 0.05, 1e-3  # [m], of that annealing
 
 
-@dataclass(frozen=True)
+@settings
 class PostureAnnealing(AnnealingSettings):
     """Ants and annealing for lattices with posture axes; the default planner there.
 

@@ -16,13 +16,12 @@ from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
-from ffsr_plan.core.errors import InvalidInput, unknown_name
-from ffsr_plan.core.kernels import said_after
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.kernels import notify_after
 from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
-from ffsr_plan.problem.lattice_settings import PostureAxis
 from ffsr_plan.problem.problem import Problem
 
 MOST_STEPS = 2_000_000  # joint edges; some hundred bytes each
@@ -44,7 +43,7 @@ class PostureLattice:
         """Build the lattice.
 
         Raises:
-            InvalidInput: an unknown joint or posture, or more steps than memory allows.
+            InvalidInput: more steps than memory allows.
         """
         self.problem = problem
         self.base = LayeredLattice(problem)
@@ -63,7 +62,7 @@ class PostureLattice:
         values = np.repeat(nominal[:, None], len(self.indices), axis=1)
         directions = displacements(problem, nominal)
         for k, (axis, index) in enumerate(zip(axes, self.indices.T, strict=True)):
-            values += directions[:, None, k] * _share(axis, index)
+            values += directions[:, None, k] * axis.factors(index)[:, None]
         self.joint_values: Array = frozen(values)
         self.successors: IntArray = frozen(self._neighbours())
 
@@ -106,7 +105,7 @@ class PostureLattice:
             begin, on = self.joint_values[i, p], self.successors[p, step]
             steps = self.joint_values[i + 1, on] - begin
             words = f"the base's reaction to {len(steps)} joint steps, before the search"
-            with said_after(5.0, words):
+            with notify_after(5.0, words):
                 turned = Reaction(self.problem.robot, begin, steps).increments
             result[i, p, step] = turned
             if self.alike:
@@ -162,27 +161,5 @@ def displacements(problem: Problem, nominal: Array) -> Array:
         problem: gives the axes.
         nominal: (m + 1, nd) joint values without displacement.
     """
-    axes = problem.lattice.postures
-    found: Array = np.stack([_displacement(problem, axis, nominal) for axis in axes], axis=1)
-    return found
-
-
-def _share(axis: PostureAxis, index: IntArray) -> Array:
-    """(n, 1) how far along the axis: in units of its direction, or of the way to its posture."""
-    share = index / axis.levels if axis.posture else index * axis.spacing
-    return np.asarray(share, dtype=np.float64)[:, None]
-
-
-def _displacement(problem: Problem, axis: PostureAxis, nominal: Array) -> Array:
-    """(m + 1, nd) direction of the axis, or the way from the nominal joints to its posture."""
-    robot = problem.robot
-    if axis.posture and axis.posture not in robot.postures:
-        raise unknown_name("lattice postures, towards", axis.posture, robot.postures)
-    named = robot.postures[axis.posture] if axis.posture else dict(axis.joints)
-    result = np.zeros_like(nominal)
-    for name, value in named.items():
-        if name not in robot.joint_names:
-            raise unknown_name("lattice postures, joints", name, robot.joint_names)
-        k = robot.joint_names.index(name)
-        result[:, k] = value - nominal[:, k] if axis.posture else value
-    return result
+    robot, axes = problem.robot, problem.lattice.postures
+    return np.stack([axis.displacement(robot, nominal) for axis in axes], axis=1)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.kernels import kernel
 from ffsr_plan.search.postures.cost_kernels import (
     PostureGrid,
     clearance_at,
@@ -19,7 +19,7 @@ from ffsr_plan.search.postures.cost_kernels import (
 )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
     """(m + 1, b, n) least cost [m] from each node to the goal, every layer at one attitude.
 
@@ -66,7 +66,7 @@ def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
     return ahead
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def walk(
     grid: PostureGrid,
     rng: np.random.Generator,
@@ -117,7 +117,7 @@ def walk(
     return True
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def lay_pheromone(
     grid: PostureGrid, amount: float, path: IntArray, tau: Array, tau_posture: Array
 ) -> None:

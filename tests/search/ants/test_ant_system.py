@@ -125,7 +125,7 @@ def test_a_wall_is_named_with_its_layer_and_obstacles(point):
 
 
 def test_the_same_seed_gives_the_same_plan_bit_for_bit(fig2a_plan):
-    scenario = fp.read_scenario("fig2a")
+    scenario = fp.Scenario.load("fig2a")
     again = fp.plan(scenario.problem, scenario.planner, scenario.seed, refine=False)
     assert again == fig2a_plan
     other = fp.plan(scenario.problem, scenario.planner, scenario.seed + 1, refine=False)

@@ -261,23 +261,6 @@ def test_numbers_of_colonies_workers_and_seconds_are_checked():
             fp.plan(problem, **wrong)
 
 
-def test_a_word_is_said_when_compiling_takes_its_time(capfd):
-    from ffsr_plan.core.kernels import call
-
-    class Kernel:
-        overloads = ()
-
-        def __call__(self, seconds):
-            time.sleep(seconds)
-            return "done"
-
-    assert call(Kernel(), 1.8) == "done"
-    assert "compiling, once" in capfd.readouterr().err
-    Kernel.overloads = ("done",)
-    assert call(Kernel(), 1.8) == "done"
-    assert capfd.readouterr().err == ""
-
-
 @pytest.mark.parametrize("workers", [1, 2])
 def test_one_ctrl_c_ends_all_colonies_and_returns_the_best_so_far(workers):
     code = (

@@ -296,8 +296,8 @@ def test_a_scenario_file_can_ask_for_a_goal_attitude(tmp_path):
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ('{ towards = "stowed" }', "either towards and levels"),
-        ('{ towards = "stowed", levels = 2, spacing = 0.1 }', "either towards and levels"),
+        ('{ towards = "stowed" }', "levels.*required"),
+        ('{ towards = "stowed", levels = 2, spacing = 0.1 }', "unknown key.*spacing"),
         ("{ joints = { left_1 = 1.0 }, half_count = 0, spacing = 0.1 }", "half_count"),
         ("{ towrds = 1 }", "did you mean"),
     ],
@@ -344,10 +344,9 @@ def with_states(text):
     ],
 )
 def test_axes_that_the_robot_does_not_have_are_refused_by_name(axis, message):
-    robot = with_states(STOWED)
-    problem = replace(turning(10), robot=robot, lattice=fp.Lattice(4, postures=[axis]))
+    robot, problem = with_states(STOWED), turning(10)
     with pytest.raises(fp.InvalidInput, match=message):
-        fp.plan(problem)
+        replace(problem, robot=robot, lattice=fp.Lattice(4, postures=[axis]))
 
 
 def test_an_axis_towards_a_posture_ends_in_it():

@@ -1,0 +1,43 @@
+"""Self-contained HTML pages made from the files of this folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+_FOLDER = Path(__file__).parent
+
+
+def html_page(name: str, data: dict[str, Any]) -> str:
+    """Text of a page that loads nothing from elsewhere.
+
+    `frame.html` is common to all pages. It receives the panels in `<name>.html`, the script
+    `<name>.js` after the common `stage.js`, the style sheet, meshcat's script and the data.
+
+    Args:
+        name: of the page, `plan` or `live`.
+        data: JSON values that the script finds in the constant `data`.
+
+    Returns:
+        The HTML text. Equal data give equal text.
+    """
+    import meshcat
+
+    bundle = Path(meshcat.__file__).parent / "viewer" / "dist" / "main.min.js"
+    parts = {
+        "/*STYLE*/": _read(_FOLDER / "style.css"),
+        "<!--PANELS-->": _read(_FOLDER / f"{name}.html"),
+        "/*STAGE*/": _read(_FOLDER / "stage.js"),
+        "/*SCRIPT*/": _read(_FOLDER / f"{name}.js"),
+        "/*MESHCAT*/": _read(bundle).replace("</script", "<\\/script"),
+        "/*DATA*/": json.dumps(data, ensure_ascii=False).replace("</", "<\\/"),
+    }  # data last, so that a title that contains a placeholder stays as it is
+    text = _read(_FOLDER / "frame.html")
+    for placeholder, part in parts.items():
+        text = text.replace(placeholder, part)
+    return text
+
+
+def _read(path: Path) -> str:
+    return path.read_text(encoding="utf-8")

@@ -1,0 +1,65 @@
+"""Errors: one root, messages from their fields, pickling by their fields."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+from ffsr_plan.core import errors
+
+EXAMPLES = [
+    errors.InvalidInput("delta", -1, "at least 0"),
+    errors.StartInCollision("base", 3, 0.1),
+    errors.GoalInCollision("base", "arm", 0.1),
+    errors.NoPath(3, (1, "arm"), 40),
+    errors.AttitudeOutOfReach(1.0, 0.25),
+    errors.PoseOutOfReach("tool", 0.1, 0.2, np.zeros(7)),
+    errors.PoseOutOfReach("tool", 0.1, None, np.zeros(7)),
+    errors.UnprovenPath(3, "arm", None, 0.01, 40),
+    errors.WorkerDied(worker=0, colonies=[0, 2], status="SIGKILL(-9)"),
+    errors.PlanNotVerified(("one", "two")),
+    errors.IntegrationError("a text"),
+    errors.InternalError("no open edge"),
+    errors.PlanningError("a text"),
+]
+
+
+@pytest.mark.parametrize("error", EXAMPLES, ids=lambda error: type(error).__name__)
+def test_errors_have_one_root_and_survive_pickling(error):
+    again = pickle.loads(pickle.dumps(error))
+    assert isinstance(again, fp.FfsrPlanError)
+    assert type(again) is type(error)
+    assert str(again) == str(error)
+    assert vars(again).keys() == vars(error).keys()
+    for name, value in vars(error).items():
+        assert np.array_equal(getattr(again, name), value)
+
+
+def test_invalid_input_is_a_value_error():
+    with pytest.raises(ValueError, match="delta: got -1; allowed: at least 0"):
+        raise errors.InvalidInput("delta", -1, "at least 0")
+
+
+@pytest.mark.parametrize(
+    ("error", "message"),
+    [
+        (errors.StartInCollision("base", 3, 0.1), "start .* 0.1 m inside obstacle 3$"),
+        (errors.GoalInCollision("a", "b", 0.1), "goal .* inside link 'b'; an SRDF can exempt"),
+        (errors.NoPath(3, (1,), 40), r"layer 3 of 40 .*closed by obstacle 1\)"),
+        (errors.NoPath(3, tuple(range(20)), 40), "closed by obstacles 0, 1, .* and 8 more"),
+        (errors.NoPath(3, (), 40), "closed by the limits of the lattice"),
+        (errors.AttitudeOutOfReach(np.pi / 2, np.pi / 6), r"by 60\.0 of 90\.0 degrees"),
+        (errors.PlanNotVerified(("one", "two")), "does not verify: one; two"),
+        (errors.InternalError("no open edge"), "internal error: no open edge; please report it"),
+        (errors.InvalidInput("x", "y" * 200, "z"), r"y\.\.\.; allowed: z"),
+    ],
+)
+def test_messages_say_what_happened(error, message):
+    with pytest.raises(type(error), match=message):
+        raise error
+
+
+def test_the_most_similar_name_is_suggested():
+    error = errors.unknown_name("robot", "pont", ["point", "satellite"])
+    assert "did you mean 'point'?" in str(error)

@@ -1,0 +1,45 @@
+"""Posture axes: the displacement of the joints, and the factor at each index."""
+
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+from ffsr_plan.problem.posture_axes import PostureTarget
+
+
+def test_both_kinds_are_posture_axes():
+    assert isinstance(fp.PostureAxis({"left_1": 1.0}, half_count=8, spacing=0.2), fp.PostureAxis)
+    assert isinstance(fp.PostureAxis.towards("stowed", levels=6), fp.PostureAxis)
+    assert fp.PostureAxis.towards("stowed", 6) == PostureTarget("stowed", 6)
+
+
+def test_a_direction_displaces_by_index_times_spacing(robot):
+    axis = fp.PostureAxis({"left_1": 1.0, "right_2": -0.5}, 2, 0.1)
+    nominal = np.full((3, robot.nd), 0.3)
+    displacement = axis.displacement(robot, nominal)
+    assert displacement.shape == nominal.shape
+    assert np.array_equal(displacement[1], [1.0, 0, 0, 0, -0.5, 0])
+    assert list(axis.indices) == [-2, -1, 0, 1, 2]
+    assert axis.factors(np.array(axis.indices)) == pytest.approx([-0.2, -0.1, 0, 0.1, 0.2])
+
+
+def test_a_target_leads_from_the_nominal_joints_to_the_posture(robot):
+    axis, nominal = fp.PostureAxis.towards("stowed", 4), np.full((3, robot.nd), 0.3)
+    displacement = axis.displacement(robot, nominal)
+    for name, value in robot.postures["stowed"].items():
+        k = robot.joint_names.index(name)
+        assert nominal[:, k] + displacement[:, k] == pytest.approx(value)
+    assert list(axis.indices) == [0, 1, 2, 3, 4]
+    assert axis.factors(np.array(axis.indices)) == pytest.approx([0, 0.25, 0.5, 0.75, 1])
+
+
+def test_their_keys_tell_them_apart():
+    axes = (fp.PostureAxis({"left_1": 1.0}, 2, 0.1), fp.PostureAxis.towards("stowed", 4))
+    stored = asdict(fp.Lattice(4, postures=axes))
+    assert [set(axis) for axis in stored["postures"]] == [
+        {"joints", "half_count", "spacing"},
+        {"towards", "levels"},
+    ]
+    assert fp.Lattice(**stored).postures == axes

@@ -1,0 +1,73 @@
+"""The public API: names, documented fields, exported types, short representations."""
+
+import dataclasses
+import inspect
+import typing
+
+import pytest
+
+import ffsr_plan as fp
+
+RECORDS = [
+    name
+    for name in fp.__all__
+    if dataclasses.is_dataclass(getattr(fp, name)) or hasattr(getattr(fp, name), "_fields")
+]
+
+
+def fields_of(record):
+    if hasattr(record, "_fields"):
+        return record._fields
+    return [f.name for f in dataclasses.fields(record) if not f.name.startswith("_")]
+
+
+def test_dir_lists_public_names_only():
+    assert set(dir(fp)) == {*fp.__all__, "__version__"}
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_every_field_of_a_public_record_has_its_text(name):
+    record = getattr(fp, name)
+    text = "\n".join(inspect.getdoc(kind) or "" for kind in record.__mro__[:-1])
+    for field in fields_of(record):
+        assert f"{field}: " in text, field
+
+
+def public_methods():
+    for name in fp.__all__:
+        thing = getattr(fp, name)
+        if inspect.isfunction(thing):
+            yield name, thing
+        elif inspect.isclass(thing):
+            for member, function in inspect.getmembers(thing, inspect.isfunction):
+                if not member.startswith("_"):
+                    yield f"{name}.{member}", function
+
+
+def own_types(annotation):
+    if inspect.isclass(annotation) and annotation.__module__.startswith("ffsr_plan"):
+        yield annotation
+    for part in typing.get_args(annotation):
+        yield from own_types(part)
+
+
+def test_types_that_public_functions_return_are_public():
+    public = {getattr(fp, name) for name in fp.__all__}
+    allowed = {"SearchResult", "Solution", "SearchMonitor"}  # of planners, for those who write one
+    for name, function in public_methods():
+        namespace = vars(inspect.getmodule(function)) | {n: getattr(fp, n) for n in fp.__all__}
+        hints = typing.get_type_hints(function, namespace)
+        for kind in own_types(hints.get("return")):
+            if kind.__name__ not in allowed:
+                assert kind in public, f"{name} returns {kind.__name__}"
+
+
+def test_objects_show_themselves_in_one_line(fig2a_plan):
+    problem = fig2a_plan.problem
+    for thing in (fig2a_plan, problem, problem.robot, problem.scene):
+        text = repr(thing)
+        assert "\n" not in text
+        assert len(text) < 200, text
+        html = thing._repr_html_()
+        assert "<table" in html
+        assert len(html) < 5_000
