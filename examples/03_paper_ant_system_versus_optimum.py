@@ -2,6 +2,7 @@
 
 `AntSystem` is the planner of the paper, `MaxMinAntSystem` the default one, and `LatticeOptimum`
 finds the exact optimum of the lattice. All of them search the same lattice without refinement.
+With other settings than the default ones, pass an object, for example `fp.AntSystem(ants=60)`.
 
 Writes `convergence.png`: F of the paper's ant system over its cycles, against the optimum.
 """
@@ -13,8 +14,8 @@ from ffsr_plan.display import convergence_figure
 def main() -> None:
     """Run three planners and draw the convergence of the first."""
     problem = fp.load_scenario("fig2a")
-    planners = [fp.AntSystem(), fp.MaxMinAntSystem(), fp.LatticeOptimum()]
-    plans = [fp.plan(problem, planner, seed=0, refine=False) for planner in planners]
+    names = ("ant-system", "max-min-ant-system", "lattice-optimum")
+    plans = [fp.plan(problem, name, seed=0, refine=False) for name in names]
 
     print("planner                  L [m]       F      gap   time [s]")
     for plan in plans:

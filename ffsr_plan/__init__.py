@@ -23,6 +23,7 @@ from ffsr_plan.core.errors import (
     InvalidInput,
     NoPath,
     PlanningError,
+    PlanNotVerified,
     PoseOutOfReach,
     StartInCollision,
     UnprovenPath,
@@ -33,18 +34,20 @@ from ffsr_plan.dynamics.inverse_dynamics import States
 from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
-from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.certificate import Certificate, Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.planning.plan import Plan
 from ffsr_plan.planning.planner import plan, refine
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Axis, Lattice
-from ffsr_plan.problem.posture_axes import PostureAxis
+from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.single_edge import EdgeProof, certify_edge
 from ffsr_plan.robots.collision_shapes import Replacement
-from ffsr_plan.robots.robot import Components, SpaceRobot, load_robot, robot_names
+from ffsr_plan.robots.loading import load_robot, robot_names
+from ffsr_plan.robots.robot import Components, SpaceRobot
 from ffsr_plan.robots.summary import RobotSummary, robot_summaries
 from ffsr_plan.satellites.arms import arm_names
 from ffsr_plan.satellites.bus import Bus, Panel
@@ -55,7 +58,7 @@ from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
 from ffsr_plan.search.lattice_optimum import LatticeOptimum
 from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
-from ffsr_plan.search.records import Cycle, History, Trails
+from ffsr_plan.search.records import Cycle, History, SearchResult, Solution, Trails
 from ffsr_plan.trajectory.timed_plan import TimedPlan
 
 if TYPE_CHECKING:
@@ -73,6 +76,7 @@ __all__ = [
     "Certificate",
     "Clearance",
     "Components",
+    "Counts",
     "Cycle",
     "EdgeProof",
     "FfsrPlanError",
@@ -93,10 +97,12 @@ __all__ = [
     "PageServer",
     "Panel",
     "Plan",
+    "PlanNotVerified",
     "PlanningError",
     "PoseOutOfReach",
     "PostureAnnealing",
     "PostureAxis",
+    "PostureTarget",
     "Problem",
     "Replacement",
     "Report",
@@ -104,12 +110,15 @@ __all__ = [
     "RobotSummary",
     "Scenario",
     "Scene",
+    "SearchResult",
+    "Solution",
     "SpaceRobot",
     "StartInCollision",
     "States",
     "TimedPlan",
     "Trails",
     "UnprovenPath",
+    "Verdict",
     "WheelMomentum",
     "WorkerDied",
     "arm_names",

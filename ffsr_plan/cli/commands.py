@@ -1,4 +1,4 @@
-"""Commands `ffsr-plan demo | plan | verify | view | export | timed | robots | schema`.
+"""Commands `ffsr-plan demo | plan | verify | view | export | gif | timed | robots | schema`.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
 plan that does not verify, 2 bad input, 130 interrupted without a plan.
@@ -143,6 +143,24 @@ def export(
 
         check_replacement("PATH.csv", table, force)
         Plan.load(plan_file).to_csv(table, samples)
+
+
+@app.command()
+def gif(
+    plan_file: PlanFile,
+    picture: Annotated[Path, typer.Argument(metavar="PATH.gif")],
+    frames: Annotated[int, typer.Option(help="Number of pictures.")] = 60,
+    width: Annotated[int, typer.Option(help="Width in pixels.")] = 720,
+    side_view: Annotated[bool, typer.Option("--side", help="Seen from the side.")] = False,
+    force: Force = False,
+) -> None:
+    """Write a saved plan as an animated GIF."""
+    with errors_on_stderr():
+        from ffsr_plan.planning.plan import Plan
+
+        check_replacement("PATH.gif", picture, force)
+        view = "side" if side_view else "path"
+        Plan.load(plan_file).write_gif(picture, frames=frames, width=width, view=view)
 
 
 @app.command()

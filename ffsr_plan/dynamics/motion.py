@@ -77,7 +77,11 @@ class Motion:
         return len(self.positions) - 1
 
     def base_steps(self) -> Array:
-        """(m, 3) what thrusters move the base origin by over each edge, world axes [m]."""
+        """Translation of the base by thrusters.
+
+        Returns:
+            (m, 3) displacement of the base origin over each edge, world axes [m].
+        """
         steps: Array = np.diff(self.positions, axis=0)
         return np.zeros_like(steps) if self.mode.floats else steps
 
@@ -101,17 +105,33 @@ class Motion:
         return whole / self.edges
 
     def displaced(self, offsets: Array) -> Motion:
-        """The same motion with the base displaced by (m + 1, 3) [m] at the corners."""
+        """The same motion with the base displaced; its attitudes and joints do not change.
+
+        Args:
+            offsets: (m + 1, 3) displacement at the corners, world axes [m].
+        """
         twin = copy.copy(self)
         twin.positions = frozen(self.positions + offsets)
         return twin
 
     def configurations(self) -> Array:
-        """(m + 1, nq) configurations at the corners."""
+        """Configurations at the corners.
+
+        Returns:
+            (m + 1, nq) base pose in the world [m, quaternion xyzw] and joints.
+        """
         return self.robot.assemble(self.positions, self.attitudes, self.joint_values)
 
     def at(self, edge: IntArray, time: Array) -> Array:
-        """(N, nq) configurations on `edge` (N,) at `time` (N,) in [0, 1]."""
+        """Configurations along the edges, base reaction included.
+
+        Args:
+            edge: (N,) edges, 0 .. m-1.
+            time: (N,) times on them, from 0 to 1.
+
+        Returns:
+            (N, nq) base pose in the world [m, quaternion xyzw] and joints.
+        """
         t = time[:, None]
         joints = self.joints_at(edge, time)
         quat = self._attitudes((edge + time) / self.edges)
@@ -122,7 +142,15 @@ class Motion:
         return self.robot.assemble(position, quat, joints)
 
     def joints_at(self, edge: IntArray, time: Array) -> Array:
-        """(N, nd) joint values there, continuous joints without a jump at half a turn."""
+        """Joint values along the edges; continuous joints without a jump at half a turn.
+
+        Args:
+            edge: (N,) edges, 0 .. m-1.
+            time: (N,) times on them, from 0 to 1.
+
+        Returns:
+            (N, nd) [rad or m].
+        """
         t = time[:, None]
         values: Array = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
         return values
@@ -135,7 +163,7 @@ class Motion:
         return np.asarray(self._origin + turned[0] - turned[1:])
 
     def _attitudes(self, progress: Array) -> Array:
-        """(N, 4) at path parameters (N,) from 0 to 1; translation turns nothing."""
+        """(N, 4) attitudes at path parameters (N,) from 0 to 1."""
         if not self.mode.attitude_reacts:
             return rotations.slerp(self._start, self._goal, progress)
         if self.joints_are_straight:

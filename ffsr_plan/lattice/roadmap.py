@@ -63,14 +63,27 @@ class Roadmap:
         return self._nodes.exact() > 0.0
 
     def without_edge_states(self) -> Roadmap:
-        """A roadmap that shares the nodes of this one and knows nothing of the edges yet."""
+        """A roadmap for another colony.
+
+        Returns:
+            A roadmap that shares the nodes of this one, all edges unknown.
+        """
         twin = copy.copy(self)
         twin.status = np.zeros_like(self.status)
         twin._verdicts = {}
         return twin
 
     def certify(self, layer: int, tail: int, head: int) -> Verdict:
-        """The verdict on the edge from node `tail` of `layer` to node `head` of the next one."""
+        """Prove an edge free, or refuse it; edges close to a refused one are refused with it.
+
+        Args:
+            layer: layer that the edge leaves.
+            tail: node of that layer.
+            head: node of the next layer.
+
+        Returns:
+            The verdict, kept for later calls.
+        """
         key = (layer, tail, head)
         if key not in self._verdicts:
             ends = (self._clearance(layer, tail), self._clearance(layer + 1, head))
@@ -83,18 +96,38 @@ class Roadmap:
         return self._verdicts[key]
 
     def free(self, layer: int, tail: int, head: int) -> bool:
-        """Whether an edge is free, certifying it if that is not known yet."""
+        """Whether an edge is free, certifying it if its state is unknown.
+
+        Args:
+            layer: layer that the edge leaves.
+            tail: node of that layer.
+            head: node of the next layer.
+        """
         known = self.status[layer, tail, head]
         return bool(known == FREE or (known == UNKNOWN and self.certify(layer, tail, head).free))
 
     def prove_path(self, path: IntArray) -> bool:
-        """Certify every edge of a path (m + 1,) whose state is unknown; whether all are free."""
+        """Certify every edge of a path whose state is unknown.
+
+        Args:
+            path: (m + 1,) nodes, one a layer.
+
+        Returns:
+            Whether all of them are free.
+        """
         edges = [(i, int(j), int(k)) for i, (j, k) in enumerate(pairwise(path))]
         verdicts = [self.free(*edge) for edge in edges]  # not only up to the first refusal
         return all(verdicts)
 
     def refused_layers(self, path: IntArray) -> IntArray:
-        """The layers that a path (m + 1,) leaves by an edge known to be refused."""
+        """The layers that a path leaves by a refused edge.
+
+        Args:
+            path: (m + 1,) nodes, one a layer.
+
+        Returns:
+            (k,) layers in ascending order.
+        """
         states = self.status[np.arange(len(self.status)), path[:-1], path[1:]]
         return np.flatnonzero(states == REFUSED)
 
@@ -107,35 +140,75 @@ class Roadmap:
             self.status[i][positive[i][:, None] + positive[i + 1] > travel] = FREE
 
     def path_length(self, path: IntArray) -> float:
-        """L of Eq. 6 [m] of a path, node indices (m + 1,)."""
+        """Length of a path.
+
+        Args:
+            path: (m + 1,) nodes, one a layer.
+
+        Returns:
+            L of Eq. 6 [m].
+        """
         return path_length(self.problem, self.lattice.offsets[path])
 
     def path_clearances(self, path: IntArray) -> Array:
-        """(m + 1,) clearances at the nodes of a path [m]."""
+        """Clearances along a path, evaluated where they are not known.
+
+        Args:
+            path: (m + 1,) nodes, one a layer.
+
+        Returns:
+            (m + 1,) link-to-sphere distances of Eq. 9 [m].
+        """
         self._nodes.learn(path)
         return self._nodes.bounds[np.arange(len(path)), path]
 
     def objective(self, path: IntArray) -> float:
-        """F of Eq. 8 of a path, node indices (m + 1,), edges taken as free."""
+        """Objective of a path whose edges are assumed free.
+
+        Args:
+            path: (m + 1,) nodes, one a layer.
+
+        Returns:
+            F of Eq. 8 [length units].
+        """
         return objective(self.problem, self.path_length(path), self.path_clearances(path))
 
     def edge_costs(self) -> Array:
-        """(n, n) share of an edge in F: its length in length units."""
+        """Contribution of edges to F.
+
+        Returns:
+            (n, n) lengths d_pq between two layers [length units].
+        """
         return self.lattice.steps / self.problem.length_unit
 
     def node_costs(self) -> Array:
-        """(m + 1, n) share of a node in F: delta / d_imin; infinite where it may not be entered."""
+        """Contribution of nodes to F; evaluates all of them.
+
+        Returns:
+            (m + 1, n) delta / d_imin [length units]; infinite at nodes in collision.
+        """
         self._nodes.exact()
         return frozen(self.optimistic_node_costs())
 
     def optimistic_node_costs(self) -> Array:
-        """(m + 1, n) lower bounds of `node_costs` from the nodes evaluated so far."""
+        """Lower bounds of `node_costs` from the nodes evaluated so far.
+
+        Returns:
+            (m + 1, n) [length units].
+        """
         costs = self.optimistic_costs_of_layers(np.arange(self.lattice.divisions + 1))
         costs[[0, -1], self.lattice.origin] = 0.0  # layers 0 and m do not count in Eq. 8
         return costs
 
     def optimistic_costs_of_layers(self, layers: IntArray) -> Array:
-        """(k, n) lower bounds of `node_costs` on inner layers (k,) from the nodes evaluated."""
+        """Lower bounds of `node_costs` on some inner layers.
+
+        Args:
+            layers: (k,) layers from 1 to m - 1.
+
+        Returns:
+            (k, n) [length units].
+        """
         bounds = self._nodes.bounds[layers]
         return np.where(bounds > 0.0, nearness(self.problem, bounds), np.inf)
 
@@ -144,11 +217,22 @@ class Roadmap:
         self._nodes.exact()
 
     def learn(self, path: IntArray) -> IntArray:
-        """Evaluate the nodes of a path (m + 1,); the inner layers of which more is known now."""
+        """Evaluate the nodes of a path.
+
+        Args:
+            path: (m + 1,) nodes, one a layer.
+
+        Returns:
+            (k,) inner layers whose bounds have changed.
+        """
         return self._nodes.learn(path)
 
     def counts(self) -> Counts:
-        """Edges decided and queries spent so far."""
+        """Edges decided and queries spent so far.
+
+        Returns:
+            Numbers of edges and of Coal queries.
+        """
         return Counts(
             edges_free=int(np.count_nonzero(self.status == FREE)),
             edges_refused=int(np.count_nonzero(self.status == REFUSED)),
@@ -157,7 +241,11 @@ class Roadmap:
         )
 
     def no_path(self) -> NoPath | None:
-        """Search the lattice from the start, certifying as needed; the error if it has no path."""
+        """Search the lattice from the start, certifying edges as needed.
+
+        Returns:
+            The error that proves that there is no path; None if there is one.
+        """
         m, origin = self.lattice.divisions, self.lattice.origin
         reached, admissible = [origin], self.admissible
         for layer in range(m):

@@ -10,9 +10,10 @@ import numpy as np
 
 from ffsr_plan.core.checks import whole_number
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.formatting import proven
+from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
+from ffsr_plan.plans.plan_summary import plan_rows
 from ffsr_plan.trajectory.csv_tables import path_table, write_csv
 from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
 from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
@@ -151,6 +152,24 @@ class Plan(PlanData):
         except OSError as error:
             raise InvalidInput("page", str(path), f"a file that can be written ({error})") from None
 
+    def write_gif(
+        self, path: str | Path, *, frames: int = 60, width: int = 720, view: str = "path"
+    ) -> None:
+        """Write the motion as an animated GIF that repeats for ever.
+
+        Args:
+            path: of the file; an existing file is replaced.
+            frames: number of pictures, at equal steps of the path parameter.
+            width: of the picture [px].
+            view: `path`, seen along the normal y' of the path frame, or `side`, along x'.
+
+        Raises:
+            InvalidInput: an argument that is not allowed, or a file that cannot be written.
+        """
+        from ffsr_plan.display.moving_picture import write_gif
+
+        write_gif(self, path, frames=frames, width=width, view=view)
+
     def show(
         self,
         port: int = 0,
@@ -194,3 +213,6 @@ class Plan(PlanData):
             f"L {self.length:.4g} m, F {self.objective:.6g}, gap {self.gap:.2%}, "
             f"proven clearance {proven(self.certificate.least_clearance)})"
         )
+
+    def _repr_html_(self) -> str:
+        return html_table("Plan", dict(plan_rows(self)))

@@ -24,7 +24,8 @@ from ffsr_plan.plans.planners import PLANNERS
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import Containers
-from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
+from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.records import History, Trails
 
@@ -145,7 +146,14 @@ def _same_replacement(stated: dict[str, Any], expected: dict[str, Any]) -> bool:
 
 
 def from_dict(data: dict[str, Any]) -> PlanData:
-    """The inverse of `to_dict`."""
+    """The inverse of `to_dict`.
+
+    Args:
+        data: what `to_dict` gives.
+
+    Raises:
+        InvalidInput: a value that is not allowed.
+    """
     given = data["problem"]
     settings = dict(data["planner"])
     problem = Problem(
@@ -214,14 +222,29 @@ def _motion(problem: Problem, data: dict[str, Any]) -> Motion:
 
 
 def write(plan: PlanData, path: Path) -> None:
-    """Write `path`; an unfinished file never takes its place."""
+    """Write a plan file, whole or not at all.
+
+    Args:
+        plan: the plan.
+        path: of the file; an existing one is replaced.
+
+    Raises:
+        InvalidInput: a file that cannot be written.
+    """
     data = to_dict(plan)
     text = json.dumps({"sha256": digest(data), **data}, allow_nan=False, indent=1)
     write_text("plan file", path, text)
 
 
 def read(path: Path) -> PlanData:
-    """Read and check `path`; see `Plan.load`."""
+    """Read and check a plan file.
+
+    Args:
+        path: of the file.
+
+    Raises:
+        InvalidInput: no such file, cut short, or changed since it was written.
+    """
     what = f"plan file '{path}'"
     try:
         text = path.read_text(encoding="utf-8")

@@ -18,7 +18,7 @@ PLANNERS: dict[str, type[Planner]] = {
 
 
 def default_planner(lattice: Lattice) -> Planner:
-    """`PostureAnnealing` on a lattice with posture axes, else `MaxMinAntSystem`."""
+    """`PostureAnnealing` on a lattice with posture axes, otherwise `MaxMinAntSystem`."""
     return PostureAnnealing() if lattice.postures else MaxMinAntSystem()
 
 

@@ -78,30 +78,7 @@ def inverse_kinematics(
         base_attitude=base_attitude,
     )
     rng = np.random.default_rng(whole_number("seed", seed, at_least=0))
-    descent = _Descent(target)
-    collides = _CollisionCheck(robot, scene)
-    collision: Nearest | None = None
-    best, least = np.zeros(robot.nd), np.inf
-    for attempt in range(_DESCENTS):
-        first = np.zeros(robot.nd) if attempt == 0 else descent.random_change(rng)
-        change = descent.run(first, _COARSE)
-        error = float(np.linalg.norm(descent.error(change)))
-        if error < least:
-            best, least = change, error
-        if error < POSE_TOLERANCE:
-            contact = collides(descent.end(change))
-            if contact is None:
-                return frozen(descent.end(change))
-            collision = collision or contact
-    best = descent.run(best, _FINE)
-    rest, q = descent.error(best), descent.end(best)
-    if np.linalg.norm(rest) < POSE_TOLERANCE:
-        contact = collision or collides(q)
-        if contact is None:
-            return frozen(q)
-        raise GoalInCollision(contact.link, contact.obstacle, -contact.distance)
-    rotation_error = None if attitude is None else float(np.linalg.norm(rest[3:]))
-    raise PoseOutOfReach(frame, float(np.linalg.norm(rest[:3])), rotation_error, frozen(q))
+    return _solution(frame, _Descent(target), _CollisionCheck(robot, scene), rng)
 
 
 def pose_target(
@@ -156,6 +133,34 @@ def pose_target(
     )
 
 
+def _solution(
+    frame: str, descent: _Descent, collides: _CollisionCheck, rng: np.random.Generator
+) -> Array:
+    """(nq,) the first end configuration found that meets the pose and is free of collision."""
+    collision: Nearest | None = None
+    best, least = descent.no_change, np.inf
+    for attempt in range(_DESCENTS):
+        first = descent.no_change if attempt == 0 else descent.random_change(rng)
+        change = descent.run(first, _COARSE)
+        error = float(np.linalg.norm(descent.error(change)))
+        if error < least:
+            best, least = change, error
+        if error < POSE_TOLERANCE:
+            contact = collides(descent.end(change))
+            if contact is None:
+                return frozen(descent.end(change))
+            collision = collision or contact
+    best = descent.run(best, _FINE)
+    rest, q = descent.error(best), descent.end(best)
+    if np.linalg.norm(rest) < POSE_TOLERANCE:
+        contact = collision or collides(q)
+        if contact is None:
+            return frozen(q)
+        raise GoalInCollision(contact.link, contact.obstacle, -contact.distance)
+    rotation_error = float(np.linalg.norm(rest[3:])) if len(rest) > 3 else None
+    raise PoseOutOfReach(frame, float(np.linalg.norm(rest[:3])), rotation_error, frozen(q))
+
+
 class _CollisionCheck:
     """The first contact of a configuration with an obstacle or between links, if any."""
 
@@ -181,6 +186,11 @@ class _Descent:
         self._low = np.where(continuous, -_HALF_TURN, robot.lower - self._begin)
         self._high = np.where(continuous, _HALF_TURN, robot.upper - self._begin)
         self._free = self._high - self._low > 1e-9  # the others are fixed by their limits
+
+    @property
+    def no_change(self) -> Array:
+        """(nd,) zeros: the joint values of the start."""
+        return np.zeros_like(self._begin)
 
     def random_change(self, rng: np.random.Generator) -> Array:
         """(nd,) uniform within the limits, revolute joints by at most half a turn."""

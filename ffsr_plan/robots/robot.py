@@ -2,36 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
-from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, one_of, unit_quaternion
+from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternion
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
-from ffsr_plan.core.text_files import read_text, write_text
-from ffsr_plan.robots.adjacent_links import may_touch
+from ffsr_plan.core.text_files import write_text
 from ffsr_plan.robots.collision_shapes import (
-    CONTAINERS,
     Containers,
     Replacement,
-    collision_geometry,
 )
 from ffsr_plan.robots.kinematics import Tree
-from ffsr_plan.robots.pinocchio_models import build_model, check_loaded, visual_model
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
-from ffsr_plan.robots.srdf import disabled_pairs, named_postures
-from ffsr_plan.robots.urdf_validation import check_urdf, parse
+from ffsr_plan.robots.srdf import named_postures
 
 
 class Components(NamedTuple):
@@ -349,131 +342,3 @@ class SpaceRobot:
     def link_of(self, geometry: pin.GeometryObject) -> str:
         """Name of the URDF link that a collision or visual shape belongs to."""
         return str(self.model.frames[geometry.parentFrame].name)
-
-
-def robot_names() -> list[str]:
-    """Names of the bundled robots."""
-    return bundled_files.names("urdf", ".urdf")
-
-
-def load_robot(
-    source: str | Path,
-    package_dirs: Sequence[str | Path] = (),
-    *,
-    srdf: str | Path | None = None,
-    meshes: str = "hull",
-    cylinders: str = "hull",
-) -> SpaceRobot:
-    """Load a robot whose root link floats freely.
-
-    Boxes, spheres and capsules are taken as they are. A cylinder or a mesh is replaced by a solid
-    that contains it, which `SpaceRobot.replacements` lists.
-
-    Args:
-        source: name of a bundled robot (see `robot_names`), or path to a `.urdf` file.
-        package_dirs: folders in which `package://` and relative mesh addresses are looked up,
-            before the folder of the `.urdf` file.
-        srdf: path to an SRDF whose `<disable_collisions>` exempt pairs of links from the check for
-            self-collision (adjacent links are exempt in any case) and whose `<group_state>`s are
-            the robot's named postures. A bundled robot comes with its own.
-        meshes: what replaces a mesh: `hull`, its convex hull, or `capsule`, a capsule around it.
-        cylinders: what replaces a cylinder: `hull`, a prism of 24 sides around it (larger by at
-            most 0.9 % of the radius), or `capsule`, the capsule around it with the least excess
-            (41 % of the radius, more for short cylinders).
-
-    Returns:
-        The robot.
-
-    Raises:
-        InvalidInput: no such robot or file, or a URDF, SRDF or mesh that cannot be used; names the
-            link or joint.
-    """
-    if not isinstance(source, (str, Path)):
-        raise InvalidInput("robot", source, "a name or a path")
-    path = bundled_files.find("urdf", str(source), ".urdf")
-    if path is not None and srdf is None:
-        srdf = bundled_files.find("urdf", str(source), ".srdf")
-    if path is None:
-        path = Path(source)
-        if path.suffix != ".urdf":
-            raise unknown_name("robot", str(source), [*robot_names(), "or a path to a .urdf file"])
-        if not path.is_file():
-            raise InvalidInput("robot", str(source), "a bundled robot or an existing .urdf file")
-    if srdf is not None and not isinstance(srdf, (str, Path)):
-        raise InvalidInput("srdf", srdf, "a path")
-    folders = [*(str(Path(p)) for p in package_dirs), str(path.parent)]
-    srdf_text = "" if srdf is None else read_text("srdf", Path(srdf))
-    if srdf is not None and not srdf_text.strip():
-        raise InvalidInput("srdf", str(srdf), "a file that is not empty")
-    containers = Containers(meshes, cylinders)
-    text = read_text("robot", path)
-    return robot_from_urdf(text, path.stem, folders, srdf=srdf_text, containers=containers)
-
-
-def robot_from_urdf(
-    text: str,
-    name: str,
-    package_dirs: Sequence[str] = (),
-    *,
-    srdf: str = "",
-    containers: Containers | None = None,
-    meshes: Mapping[str, Array] | None = None,
-) -> SpaceRobot:
-    """Make a robot from URDF and SRDF texts; see `load_robot`.
-
-    Args:
-        text: the URDF.
-        name: name of the robot, which also starts every error message.
-        package_dirs: folders in which mesh addresses are looked up.
-        srdf: the SRDF; empty for none.
-        containers: which kinds of solids replace meshes and cylinders; hulls by default.
-        meshes: (n, 3) hull corners by address (see `SpaceRobot.meshes`), which need no file.
-
-    Returns:
-        The robot.
-
-    Raises:
-        InvalidInput: a URDF, SRDF or mesh that cannot be used.
-    """
-    counts = check_urdf(text, name)
-    containers = Containers() if containers is None else containers
-    for what, kind in containers._asdict().items():
-        one_of(what, kind, CONTAINERS)
-    folders = list(package_dirs)
-    corners = dict(meshes or {})
-    root = parse(text, name)
-    model = build_model(text, name)
-    collision, replacements = collision_geometry(model, root, name, folders, containers, corners)
-    check_loaded(name, model, collision, counts)
-    links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
-    disabled = disabled_pairs(srdf, f"{name}, SRDF", links)
-    _add_self_collision_pairs(model, collision, root, disabled)
-    return SpaceRobot(
-        name,
-        text,
-        model,
-        collision,
-        visual_model(model, text, folders),
-        package_dirs=tuple(folders),
-        replacements=replacements,
-        containers=containers,
-        meshes=corners,
-        srdf=srdf,
-        disabled_pairs=disabled,
-    )
-
-
-def _add_self_collision_pairs(
-    model: pin.Model,
-    collision: pin.GeometryModel,
-    root: ElementTree.Element,
-    disabled: Sequence[tuple[str, str]],
-) -> None:
-    """Add all pairs of shapes except those of adjacent links and those that the SRDF exempts."""
-    adjacent = may_touch(root)
-    links = [str(model.frames[shape.parentFrame].name) for shape in collision.geometryObjects]
-    for a, first in enumerate(links):
-        for b, second in enumerate(links[:a]):
-            pair = (min(first, second), max(first, second))
-            if pair not in disabled and not adjacent(first, second):
-                collision.addCollisionPair(pin.CollisionPair(b, a))

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.robots.robot import SpaceRobot, load_robot, robot_names
+from ffsr_plan.robots.loading import load_robot, robot_names
+from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.shape_arrays import BOX
 
 

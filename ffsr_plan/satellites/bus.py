@@ -104,9 +104,6 @@ def box_inertia(mass: float, size: ArrayLike) -> Array:
     return mass / 12.0 * np.array([y + z, x + z, x + y])
 
 
-_box_inertia = box_inertia  # name within this module
-
-
 def _inertia(what: str, value: ArrayLike) -> Array:
     """(3, 3) inertia [kg m^2] of a body with mass in all three directions, or `InvalidInput`."""
     try:

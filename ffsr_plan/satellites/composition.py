@@ -23,7 +23,8 @@ from ffsr_plan.meshes.box_cover import boxes_around
 from ffsr_plan.meshes.hull_reduction import beyond
 from ffsr_plan.meshes.mesh_files import find, hull, surface
 from ffsr_plan.robots.collision_shapes import origin
-from ffsr_plan.robots.robot import SpaceRobot, robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
+from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.urdf_validation import LARGEST, attribute_numbers
 from ffsr_plan.satellites.arms import Arm, load_arm
 from ffsr_plan.satellites.bus import Bus

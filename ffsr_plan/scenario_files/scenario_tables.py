@@ -19,7 +19,8 @@ from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import ModeName, Problem
 from ffsr_plan.robots.collision_shapes import CONTAINERS
-from ffsr_plan.robots.robot import SpaceRobot, load_robot
+from ffsr_plan.robots.loading import load_robot
+from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scenario_files.obstacle_tables import (
     BeltTable,
     CloudTable,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.builders import (
     box,
     inertial,

@@ -193,10 +193,10 @@ def test_another_lattice_than_the_one_watched_is_refused(view, wide_problem):
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"problem": "fig2a"}, {"pace": -1.0}, {"pace": np.nan}, {"port": -1},
-              {"open_browser": 1}],
+    "wrong",
+    [{"problem": "fig2a"}, {"pace": -1.0}, {"pace": np.nan}, {"port": -1}, {"open_browser": 1}],
     ids=str,
-)  # fmt: skip
+)
 def test_invalid_arguments_are_refused(problem, wrong):
     given = {"problem": problem, "open_browser": False, **wrong}
     with pytest.raises(fp.InvalidInput, match=next(iter(wrong))):

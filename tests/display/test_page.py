@@ -23,6 +23,12 @@ def html(fig2a_plan):
     return page(fig2a_plan, "the title")
 
 
+def browse(folder, *arguments):
+    """What the browser prints; its files lie in a folder."""
+    command = [CHROMIUM, *FLAGS, f"--user-data-dir={folder / 'profile'}", *arguments]
+    return subprocess.run(command, check=True, capture_output=True, timeout=120, text=True).stdout
+
+
 def test_the_page_loads_nothing_from_the_network(html):
     markup = re.sub(r"<script>.*?</script>", "", html, flags=re.S)
     assert not re.search(r"(src|href)\s*=", markup)
@@ -46,21 +52,13 @@ def test_the_robot_moves_on_the_page_in_a_browser(html, tmp_path):
     shots = []
     for s in ("0.1", "0.6"):
         shot = tmp_path / f"{s}.png"
-        subprocess.run(
-            [CHROMIUM, *FLAGS, f"--user-data-dir={tmp_path / 'profile'}",
-             f"--screenshot={shot}", f"file://{tmp_path}/plan.html#s={s}"],
-            check=True, capture_output=True, timeout=120,
-        )  # fmt: skip
+        browse(tmp_path, f"--screenshot={shot}", f"file://{tmp_path}/plan.html#s={s}")
         shots.append(shot)
         colours, edges = colours_and_edges(shot, SCENE)
         assert colours > 2000
         assert 0.005 < edges < 0.2
     assert shots[0].read_bytes() != shots[1].read_bytes()
-    dom = subprocess.run(
-        [CHROMIUM, *FLAGS, f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom",
-         f"file://{tmp_path}/plan.html"],
-        check=True, capture_output=True, timeout=120, text=True,
-    ).stdout  # fmt: skip
+    dom = browse(tmp_path, "--dump-dom", f"file://{tmp_path}/plan.html")
     assert "<title>ready: the title</title>" in dom
 
 
@@ -70,11 +68,7 @@ def test_a_page_without_a_scene_would_be_noticed(html, tmp_path):
     """What the test above relies on: an empty scene has few colours."""
     empty = re.sub(r'"commands": \[.*?\]', '"commands": []', html, count=1, flags=re.S)
     (tmp_path / "plan.html").write_text(empty, encoding="utf-8")
-    subprocess.run(
-        [CHROMIUM, *FLAGS, f"--user-data-dir={tmp_path / 'profile'}",
-         f"--screenshot={tmp_path / 'shot.png'}", f"file://{tmp_path}/plan.html"],
-        check=True, capture_output=True, timeout=120,
-    )  # fmt: skip
+    browse(tmp_path, f"--screenshot={tmp_path / 'shot.png'}", f"file://{tmp_path}/plan.html")
     colours, _ = colours_and_edges(tmp_path / "shot.png", SCENE)
     assert colours < 1000
 

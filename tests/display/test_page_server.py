@@ -84,10 +84,10 @@ def in_session(leader):
 
 def started(*command):
     """A process that leads a session of its own, and the address that it prints first."""
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     process = subprocess.Popen(
-        [sys.executable, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        start_new_session=True, env=ENVIRONMENT,
-    )  # fmt: skip
+        [sys.executable, *command], start_new_session=True, env=ENVIRONMENT, **pipes
+    )
     return process, process.stdout.readline().split()[0]
 
 
@@ -127,10 +127,18 @@ def test_a_server_on_all_addresses_would_be_noticed():
 
 @pytest.mark.parametrize(
     "hosts",
-    [["evil.example"], ["evil.example:80"], [], ["127.0.0.1.evil.example"], ["[::1"], [""],
-     ["127.0.0.1", "evil.example"], ["127.0.0.1@evil.example"]],
+    [
+        ["evil.example"],
+        ["evil.example:80"],
+        [],
+        ["127.0.0.1.evil.example"],
+        ["[::1"],
+        [""],
+        ["127.0.0.1", "evil.example"],
+        ["127.0.0.1@evil.example"],
+    ],
     ids=str,
-)  # fmt: skip
+)
 def test_requests_for_other_host_names_are_refused(server, hosts):
     for path in ("/", "/events"):
         status, text = get(server.url, path=path, hosts=hosts)
@@ -269,9 +277,11 @@ def test_view_refuses_files_and_ports_that_are_unusable(plan_file, server, tmp_p
 
     (tmp_path / "torn.json").write_text(plan_file.read_text()[:5000])
     for arguments in (
-        ["missing.json"], [str(tmp_path / "torn.json")], [str(plan_file), "--port", "70000"],
+        ["missing.json"],
+        [str(tmp_path / "torn.json")],
+        [str(plan_file), "--port", "70000"],
         [str(plan_file), "--port", str(port_of(server.url))],
-    ):  # fmt: skip
+    ):
         result = CliRunner().invoke(app, ["view", *arguments, "--no-browser"])
         assert result.exit_code == 2
         assert result.stderr.startswith("ffsr-plan: ")

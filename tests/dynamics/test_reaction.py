@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.momentum import connections
 from ffsr_plan.dynamics.reaction import Reaction
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.builders import box, inertial, joint, link, random_robot, urdf
 
 seeds = st.integers(0, 10_000)

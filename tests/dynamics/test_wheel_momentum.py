@@ -12,7 +12,7 @@ from ffsr_plan.dynamics import wheel_momentum as wheels
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import rest_to_rest, wheel_momentum
 from ffsr_plan.plans import plan_data
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.builders import (
     box,
     inertial,

@@ -3,7 +3,7 @@
 import numpy as np
 
 import ffsr_plan as fp
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 
 
 def inertial(mass, moments, xyz=(0.0, 0.0, 0.0), rpy=(0.0, 0.0, 0.0)):

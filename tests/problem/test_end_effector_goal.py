@@ -12,7 +12,7 @@ from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core.rotations import to_angles
 from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.builders import (
     box,
     inertial,

@@ -11,7 +11,7 @@ from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.travel_bound import TravelBound
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.separation import separation
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 from tests.helpers.builders import box, inertial, joint, link, random_robot, urdf

@@ -14,7 +14,7 @@ import ffsr_plan as fp
 from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.meshes.mesh_files import hull, hull_corners
 from ffsr_plan.robots.collision_shapes import Containers, convex, sharpen
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.solids import Shape, sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies
 from tests.helpers.builders import (

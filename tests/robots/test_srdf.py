@@ -3,7 +3,7 @@
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.urdf_reading import Bodies
 from tests.helpers.builders import box, inertial, joint, link, urdf
 

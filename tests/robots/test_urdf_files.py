@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.builders import box, inertial, joint, link, urdf
 
 GOOD = inertial(2.0, (0.1, 0.2, 0.25))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.scene import generators
 from tests.helpers.builders import box, inertial, joint, link, urdf
 

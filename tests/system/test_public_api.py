@@ -53,13 +53,11 @@ def own_types(annotation):
 
 def test_types_that_public_functions_return_are_public():
     public = {getattr(fp, name) for name in fp.__all__}
-    allowed = {"SearchResult", "Solution", "SearchMonitor"}  # of planners, for those who write one
     for name, function in public_methods():
         namespace = vars(inspect.getmodule(function)) | {n: getattr(fp, n) for n in fp.__all__}
         hints = typing.get_type_hints(function, namespace)
         for kind in own_types(hints.get("return")):
-            if kind.__name__ not in allowed:
-                assert kind in public, f"{name} returns {kind.__name__}"
+            assert kind in public, f"{name} returns {kind.__name__}"
 
 
 def test_objects_show_themselves_in_one_line(fig2a_plan):

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.robots.collision_shapes import Containers
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.solids import Shape, least_sphere_distance, sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies
 from tests.helpers.builders import box, capsule, cylinder, inertial, joint, link, mesh, urdf

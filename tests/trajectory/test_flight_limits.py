@@ -5,7 +5,7 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.trajectory.straight_runs import straight_runs
 from tests.helpers.random_motions import USUAL, bent_motion, flown, read
 

@@ -13,7 +13,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import wheel_momentum
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.builders import box, inertial, joint, link, urdf
 from tests.helpers.random_motions import USUAL, bent_motion, flown, inside, straight_motion
 

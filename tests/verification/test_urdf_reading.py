@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.meshes.mesh_files import hull
 from ffsr_plan.robots.collision_shapes import convex
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification import solids
 from ffsr_plan.verification.separation import separation
 from ffsr_plan.verification.urdf_reading import Bodies, pose

@@ -29,7 +29,7 @@ from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, random_proble
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 
 MASSES = (5.0, 20.0, 100.0, 500.0, 2000.0)
 DELTAS = (0.0, 0.001, 0.1, 2.0)

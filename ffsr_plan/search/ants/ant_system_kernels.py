@@ -10,16 +10,19 @@ from ffsr_plan.lattice.edge_states import FREE
 
 
 @kernel
-def _fill_roulette(roulette: Array, log_weight: Array, open_row: Flags) -> None:
-    """Cumulative weights of one row, scaled by the largest: only ratios count."""
+def _fill_roulette(
+    roulette: Array, tau: Array, alpha: float, log_visibility: Array, open_row: Flags
+) -> None:
+    """Cumulative weights tau^alpha eta^beta of one row, scaled by the largest."""
+    log_weights = alpha * np.log(tau) + log_visibility
     largest = -np.inf
     for k in range(len(roulette)):
-        if open_row[k] and log_weight[k] > largest:
-            largest = log_weight[k]
+        if open_row[k] and log_weights[k] > largest:
+            largest = log_weights[k]
     total = 0.0
     for k in range(len(roulette)):
         if open_row[k]:
-            total += np.exp(log_weight[k] - largest)
+            total += np.exp(log_weights[k] - largest)
         roulette[k] = total
 
 
@@ -55,11 +58,9 @@ def walk(
         layer: layer to continue at, -1 at the beginning.
 
     Returns:
-        Ant and layer of the unproven edge; (ants, 0) at the end; (-1, 0) if the start is a dead
-        end.
+        Ant and layer of the unproven edge; (ants, 0) at the end; (-1, 0) at a closed start.
     """
     ants, m = len(paths), len(tau)
-    scratch = np.empty(open_edges.shape[1])
     resumed, layer = layer >= 0, max(layer, 0)
     while ant < ants:
         while layer < m:
@@ -75,8 +76,8 @@ def walk(
                 layer = 0  # a dead end by now: the ant starts anew
                 continue
             if changed[layer, tail]:
-                scratch[:] = alpha * np.log(tau[layer, tail]) + log_visibility[tail]
-                _fill_roulette(roulettes[layer, tail], scratch, open_edges[layer, tail])
+                row, seen = tau[layer, tail], log_visibility[tail]
+                _fill_roulette(roulettes[layer, tail], row, alpha, seen, open_edges[layer, tail])
                 changed[layer, tail] = False
             roulette = roulettes[layer, tail]
             head = np.searchsorted(roulette, rng.random() * roulette[-1], side="right")
@@ -84,6 +85,5 @@ def walk(
             if status[layer, tail, head] != FREE:
                 return ant, layer
             layer += 1
-        ant += 1
-        layer = 0
+        ant, layer = ant + 1, 0
     return ants, 0

@@ -63,7 +63,12 @@ class PathProof(NamedTuple):
 
 
 def prove_path(lattice: PostureLattice, path: IntArray) -> PathProof:
-    """Prove the motion along a path (m + 1, 2) of base offsets and postures."""
+    """Prove the motion along a path.
+
+    Args:
+        lattice: the lattice.
+        path: (m + 1, 2) base offset and posture on each layer.
+    """
     base, joints = lattice.base, lattice.joint_values[np.arange(len(path)), path[:, 1]]
     return _prove(lattice.problem, base.nominal.positions + base.offsets[path[:, 0]], joints)
 
@@ -95,7 +100,11 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
 
 
 def check_start(problem: Problem) -> None:
-    """Raise `StartInCollision`, with link, obstacle and depth, if the start touches anything."""
+    """Check that the start touches nothing.
+
+    Raises:
+        StartInCollision: with link, obstacle and depth.
+    """
     start = problem.start
     motion = Motion(problem.robot, problem.mode, start, start, np.tile(start[:3], (2, 1)))
     prover = Prover(motion, problem.scene, problem.tolerance)
@@ -106,7 +115,15 @@ def check_start(problem: Problem) -> None:
 
 
 def length_of(lattice: PostureLattice, motion: Motion) -> float:
-    """L of Eq. 6 [m]: base offsets and joint displacements from the nominal motion."""
+    """Length of a motion from its base offsets and joint displacements.
+
+    Args:
+        lattice: gives the nominal motion.
+        motion: the motion.
+
+    Returns:
+        L of Eq. 6 [m].
+    """
     nominal = lattice.base.nominal
     offsets = motion.positions - nominal.positions
     if motion.mode.floats:
@@ -115,7 +132,15 @@ def length_of(lattice: PostureLattice, motion: Motion) -> float:
 
 
 def objective_of(lattice: PostureLattice, proof: PathProof) -> float:
-    """F of Eq. 8 [length units]."""
+    """Objective of a proven path.
+
+    Args:
+        lattice: gives the nominal motion.
+        proof: motion and clearances.
+
+    Returns:
+        F of Eq. 8 [length units].
+    """
     return objective(lattice.problem, length_of(lattice, proof.motion), proof.clearances)
 
 

@@ -10,7 +10,7 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
-from ffsr_plan.robots.robot import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.search.postures.attitude_correction import _slopes, corrected
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import ATTITUDE_TOLERANCE
