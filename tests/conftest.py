@@ -3,7 +3,7 @@
 import signal
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, Phase, settings
 
 import ffsr_plan as fp
 
@@ -12,6 +12,9 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of
 
 settings.register_profile(
     "ffsr", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.register_profile(  # of tools/run_mutations.py: a failing example need not be small
+    "mutations", settings.get_profile("ffsr"), phases=[Phase.explicit, Phase.generate]
 )
 settings.load_profile("ffsr")
 

@@ -21,6 +21,13 @@ def test_a_failed_write_keeps_the_previous_file(tmp_path):
     assert path.read_text() == "before"
 
 
+def test_a_failed_write_leaves_no_unfinished_file(tmp_path):
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(fp.InvalidInput, match="path"):
+        write_text("path", tmp_path / "folder", "after")
+    assert [p.name for p in tmp_path.iterdir()] == ["folder"]
+
+
 def test_unreadable_files_are_named(tmp_path):
     (tmp_path / "latin.txt").write_bytes(b"\xff")
     for name, reason in (("none.txt", "No such file"), ("latin.txt", "utf-8")):

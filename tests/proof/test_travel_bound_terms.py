@@ -130,6 +130,17 @@ def test_a_link_may_rotate_faster_than_at_the_middle():
     assert tightness(way, STILL) < 1.0
 
 
+def test_a_slider_is_fastest_at_its_largest_offset():
+    """At the middle it passes the rotation axis; only its ends have a speed of rotation."""
+    made = put_together(
+        body(1.0, 1.0), [], [limb("revolute"), limb("prismatic", X, shapes=[dot()], parent=1)]
+    )
+    way = SampledEdge(made, np.array([0.0, -1.0]), np.array([2.0, 2.0]), turn=STILL)
+    travel = way.travel(np.array([0.5]), np.ones(1))
+    speeds = np.linalg.norm(np.diff(way.places(0.5, 1.0)[0], axis=0), axis=2) * SAMPLES
+    assert 1.3 * np.linalg.norm(travel.velocity) < np.max(speeds) <= np.max(travel.speed)
+
+
 def test_sliding_along_a_rotation_axis_adds_no_curvature():
     """The axes stay parallel, although another joint slides between them."""
     slider = limb("prismatic", Z, parent=2, shapes=[dot()])

@@ -8,7 +8,14 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.search.postures.annealing_kernels import anneal, shift, trial_cost, uncosted_path
-from ffsr_plan.search.postures.cost_kernels import new_workspace, path_cost
+from ffsr_plan.search.postures.cost_kernels import (
+    COLLISION_COST,
+    DEPTH_COST,
+    new_workspace,
+    node_cost,
+    path_cost,
+)
+from ffsr_plan.search.postures.path_proof import prove_path
 from ffsr_plan.search.postures.posture_grid import posture_grid, without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from tests.helpers.spatial_robot import spatial_problem
@@ -108,6 +115,18 @@ def test_a_refused_edge_is_not_taken_again():
     cost = anneal(refused, rng, aside, 3000, 0.5, 1e-3, weights, found)
     assert cost < np.inf
     assert not np.array_equal(found[layer : layer + 2], path[layer : layer + 2])
+
+
+def test_node_costs_follow_from_coals_clearances():
+    grid, path = ground_and_path("gate")
+    current = uncosted_path(path)
+    path_cost(grid, current, WEIGHT)
+    exact = prove_path(PostureLattice(PROBLEMS["gate"]()), path).clearances
+    assert current.clearances[1:] == pytest.approx(exact[1:], abs=1e-9)
+    for clearance, cost in zip(exact[1:-1], current.costs[1:-1], strict=True):
+        assert cost == pytest.approx(node_cost(grid, clearance, True))
+    assert node_cost(grid, -0.1, False) == COLLISION_COST + 0.1 * DEPTH_COST
+    assert node_cost(grid, 0.1, True) == pytest.approx(grid.clearance_weight / 0.1)
 
 
 def test_what_the_search_counts_is_the_objective_of_what_it_returns():
