@@ -137,7 +137,7 @@ def test_cavities_and_narrow_openings_stay_free():
     assert not covered(fp.Scene.from_mesh(neck, 0.12), middle)[0]
 
 
-def test_parts_that_overlap_and_parts_turned_inside_out_are_solid():
+def test_overlapping_and_inside_out_parts_are_solid():
     left, right = MESHES["box"].copy(), MESHES["box"].copy()
     right.apply_translation((0.5, 0.0, 0.0))
     both = trimesh.util.concatenate([left, right])

@@ -37,7 +37,7 @@ def test_a_larger_delta_keeps_farther_from_the_obstacles(experiment):
     assert mean[6.0] > mean[2.0]
 
 
-def test_the_papers_experiment_has_to_bend_and_has_more_than_one_way_round(experiment):
+def test_the_papers_experiment_has_several_curved_paths(experiment):
     for plan in experiment[6.0] + experiment[2.0]:
         assert np.abs(plan.nodes).max() > 10
         walked = plan.trails.tail[plan.trails.layer == 12] - 40
@@ -68,7 +68,7 @@ def test_plans_of_random_robots_verify_in_both_modes(seed):
         assert report.momentum_residual < 1e-9
 
 
-def test_the_motion_passes_through_the_configurations_and_joins_up(fig2a_plan):
+def test_the_motion_passes_through_the_configurations(fig2a_plan):
     m = fig2a_plan.problem.lattice.divisions
     assert np.allclose(fig2a_plan.at(np.arange(m + 1) / m), fig2a_plan.configurations, atol=1e-12)
     before = fig2a_plan.at((np.arange(1, m)) / m - 1e-9)
@@ -123,7 +123,7 @@ def test_a_file_that_is_no_plan_is_refused(tmp_path):
         fp.Plan.load(tmp_path / "missing.json")
 
 
-def test_certificates_count_every_edge_of_the_path_and_nothing_below_zero(robot, point):
+def test_certificates_count_every_edge_of_the_path(robot, point):
     empty = fp.Problem(
         robot, fp.Scene(), robot.neutral(), robot.configuration((4, 0, 0)),
         lattice=fp.Lattice(10, fp.Axis(5, 0.2)),

@@ -76,7 +76,7 @@ def resigned(path, change):
         lambda d: d.pop("history"),
     ],
 )
-def test_a_malformed_plan_file_is_refused_even_with_a_fitting_digest(fig2a_plan, tmp_path, change):
+def test_a_malformed_plan_with_a_valid_digest_is_refused(fig2a_plan, tmp_path, change):
     fig2a_plan.save(tmp_path / "plan.json")
     resigned(tmp_path / "plan.json", change)
     with pytest.raises(fp.InvalidInput):
@@ -106,9 +106,7 @@ FORGED = [
 
 
 @pytest.mark.parametrize(("change", "message"), FORGED)
-def test_figures_that_no_planner_gives_are_refused_even_with_a_fitting_digest(
-    fig2a_plan, tmp_path, change, message
-):
+def test_impossible_figures_with_a_valid_digest_are_refused(fig2a_plan, tmp_path, change, message):
     fig2a_plan.save(tmp_path / "plan.json")
     resigned(tmp_path / "plan.json", change)
     with pytest.raises(fp.InvalidInput, match=message):

@@ -102,7 +102,7 @@ def test_a_cylinder_lies_inside_its_replacement(kind, radius, length):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_capsule_around_a_cylinder_is_the_one_with_least_excess(seed):
+def test_the_capsule_around_a_cylinder_has_the_least_excess(seed):
     radius, length = np.random.default_rng(seed).uniform(0.05, 0.5, 2).tolist()
     (replaced,) = one_link(
         cylinder(radius, length), containers=Containers(cylinders="capsule")
@@ -116,7 +116,7 @@ def test_the_capsule_around_a_cylinder_is_the_one_with_least_excess(seed):
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_mesh_lies_inside_its_replacement_scale_and_place_included(tmp_path, suffix, kind):
+def test_a_scaled_and_placed_mesh_lies_in_its_replacement(tmp_path, suffix, kind):
     blob(1).export(tmp_path / f"blob.{suffix}")
     scale, place = (0.5, -2.0, 1.5), {"xyz": (0.3, -0.2, 0.1), "rpy": (0.4, -0.7, 1.1)}
     solid = trimesh.load_mesh(tmp_path / f"blob.{suffix}")

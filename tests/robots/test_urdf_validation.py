@@ -210,7 +210,7 @@ def test_a_moving_body_without_mass_is_refused_by_name(frame):
 
 
 @pytest.mark.parametrize(("mass", "moments"), [(0.0, (1.0, 1.0, 1.0)), (-1.0, (0.0, 0.0, 0.0))])
-def test_neither_an_inertia_without_mass_nor_a_negative_mass_is_taken(mass, moments):
+def test_inertia_without_mass_and_negative_mass_are_refused(mass, moments):
     text = urdf(
         body("base"),
         link("a", inertial(mass, moments)),

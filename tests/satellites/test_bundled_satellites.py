@@ -118,7 +118,7 @@ def test_small_joint_loops_rotate_the_base_about_three_axes():
     assert singular[-1] > 0.1  # [rad] for each unit of area, about the weakest axis
 
 
-def test_a_plan_of_the_bundled_satellite_past_an_obstacle_verifies():
+def test_a_plan_of_the_bundled_satellite_verifies():
     robot = fp.load_robot("satellite_ur5")
     problem = fp.Problem(
         robot,

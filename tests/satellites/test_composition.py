@@ -145,7 +145,7 @@ def close(found, wanted, tolerance=1e-9):
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_pinocchio_finds_every_link_where_the_arms_own_urdf_has_it(case, seed):
+def test_links_are_where_the_arms_own_urdf_has_them(case, seed):
     mounts, robot = case
     values = draw(robot, seed)
     poses, masses = expected(mounts, values)
@@ -287,7 +287,7 @@ def test_a_bus_has_the_inertia_of_a_homogeneous_box():
     close(base.lever, np.zeros(3))
 
 
-def test_pairs_that_an_arms_srdf_exempts_stay_exempt_under_its_prefix(case):
+def test_pairs_exempt_in_an_arms_srdf_stay_exempt(case):
     mounts, robot = case
     if mounts is TWINS:
         assert ("l_base_link", "l_upper_arm_link") in robot.disabled_pairs
@@ -336,7 +336,7 @@ def test_capsules_and_cylinders_are_kept(tmp_path):
     assert names == ["Box", "Sphere", "Capsule", "Box"]
 
 
-def test_boxes_around_a_mesh_are_where_its_origin_and_scale_put_it(tmp_path):
+def test_boxes_follow_origin_and_scale_of_their_mesh(tmp_path):
     """A mesh that is turned, shifted and mirrored: its points must lie in some box of the link."""
     corners = np.array([[0, 0, 0], [0.4, 0, 0], [0, 0.1, 0], [0.1, 0.02, 0.9], [0.3, 0.1, 0.2]])
     solid = trimesh.convex.convex_hull(corners)

@@ -95,7 +95,7 @@ def test_a_scatter_is_the_random_scene_of_the_benchmarks():
 
 
 @pytest.mark.parametrize(("begin", "end"), [((0, 0, 0), (3, 4, 0)), ((1, 1, 1), (1, 1, 4))])
-def test_struts_of_a_truss_lie_in_its_spheres_and_nothing_else_does(begin, end):
+def test_spheres_of_a_truss_cover_its_struts_and_no_more(begin, end):
     radius, width, bays = 0.05, 0.6, 3
     scene = truss(begin, end, width, bays, radius, roll=0.3)
     begin, end = np.array(begin, float), np.array(end, float)

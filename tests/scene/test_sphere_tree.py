@@ -75,7 +75,7 @@ def test_the_search_agrees_with_all_pairs(seed, count):
         assert each[named, near.obstacle].min() == pytest.approx(each.min(), abs=1e-9)
 
 
-def test_ten_thousand_spheres_give_the_same_clearance_as_all_pairs(robot):
+def test_the_sphere_tree_agrees_with_all_pairs_of_10000(robot):
     rng = np.random.default_rng(5)
     scene = fp.Scene(rng.uniform(-8, 8, (10_000, 3)), rng.uniform(0.005, 0.05, 10_000))
     q = np.array([random_configuration(robot, rng) for _ in range(5)])

@@ -56,7 +56,7 @@ def test_the_optimum_equals_brute_force_over_certified_edges(robot_name, normal,
 
 @given(seeds)
 @settings(max_examples=40)
-def test_no_path_names_the_first_layer_out_of_reach_whatever_the_planner(seed):
+def test_no_path_names_the_same_layer_for_all_planners(seed):
     p = problem(seed, obstacles=14, radii=(0.5, 1.0))
     roadmap = roadmap_or_none(p)
     if roadmap is None:
@@ -104,7 +104,7 @@ def test_what_is_obviously_free_is_free(seed):
 
 
 @pytest.mark.parametrize("delta", [0.0, 0.1, 2.0, 6.0])
-def test_evaluating_only_the_nodes_of_candidate_paths_gives_the_same_optimum(delta):
+def test_lazy_node_evaluation_gives_the_same_optimum(delta):
     given_ = fp.load_scenario("fig2a")
     rng = np.random.default_rng(11)
     for _ in range(5):

@@ -43,7 +43,7 @@ def certified(motion, scene):
     ]
 
 
-def test_a_plan_with_the_attitude_held_collides_when_the_base_reacts(problem):
+def test_a_plan_for_a_held_base_collides_when_it_reacts(problem):
     held = fp.plan(replace(problem, mode="attitude-held"), fp.LatticeOptimum())
     assert held.verify(samples=SAMPLES).ok
     assert least_clearance(held.motion, problem.scene) > 0.0
@@ -54,7 +54,7 @@ def test_a_plan_with_the_attitude_held_collides_when_the_base_reacts(problem):
     assert not all(certified(flight, problem.scene))
 
 
-def test_a_plan_with_reaction_does_not_collide_when_the_base_reacts(problem):
+def test_a_plan_with_reaction_does_not_collide(problem):
     plan = fp.plan(problem, fp.LatticeOptimum())
     assert plan.verify(samples=SAMPLES).ok
     assert least_clearance(plan.motion, problem.scene) > 0.0

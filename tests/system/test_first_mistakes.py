@@ -19,7 +19,7 @@ def plan():
     return fp.plan(fp.load_scenario("fig2b"), fp.LatticeOptimum())
 
 
-def test_a_plan_some_of_whose_cycles_found_no_path_is_kept_like_any_other(tmp_path):
+def test_plans_with_cycles_without_a_path_are_saved(tmp_path):
     found = fp.plan(fp.load_scenario("debris"), fp.MaxMinAntSystem(ants=2), seed=0, refine=False)
     assert np.isinf(found.history.iteration_best).any()
     found.save(tmp_path / "plan.json")
@@ -58,7 +58,7 @@ def test_what_is_not_a_number_does_not_verify(plan):
         assert not wrong.verify(5).ok
 
 
-def test_a_truss_of_too_many_spheres_is_refused_with_a_radius_that_would_do():
+def test_too_many_truss_spheres_are_refused_with_a_radius():
     with pytest.raises(fp.InvalidInput, match=r"truss radius.*m or more"):
         generators.truss((0, 0, 0), (1000, 0, 0), width=0.5, bays=3, radius=1e-6)
 

@@ -20,7 +20,7 @@ def test_spread_arms_do_not_pass_the_gate_and_that_is_proven(name):
 
 
 @pytest.mark.parametrize("name", ["gate", "double_gate"])
-def test_the_colony_passes_the_gate_with_its_arms_stowed_and_arrives_as_demanded(name):
+def test_the_colony_passes_the_gate_with_its_arms_stowed(name):
     problem = fp.load_scenario(name)
     plan = fp.plan(problem, seed=0)
     report = plan.verify(300)

@@ -80,7 +80,7 @@ def test_the_engine_and_pinocchio_have_the_same_bodies(name):
 
 
 @pytest.mark.parametrize("name", ["planar_dual_arm", *SPATIAL])
-def test_a_free_flying_plan_flown_by_the_engine_turns_its_base_as_planned(plans, name):
+def test_mujoco_rotates_a_free_flying_base_as_planned(plans, name):
     plan = plans["free-flying", name]
     robot = plan.problem.robot
     flight = engine.fly(robot, "free-flying", engine.course_of(plan, DURATION), DURATION)
@@ -141,7 +141,7 @@ def centers_of_mass(robot, joint_values):
 
 
 @pytest.mark.parametrize("name", ["planar_dual_arm", *SPATIAL, 9])
-def test_without_thrusters_base_and_arms_move_about_their_centre_of_mass(name):
+def test_without_thrusters_the_centre_of_mass_is_at_rest(name):
     robot = robot_named(name)
     start = random_configuration(robot, np.random.default_rng(3))
     flight = engine.fly(robot, "free-floating", waving(robot, start, 20.0, 4), 20.0, every=1)

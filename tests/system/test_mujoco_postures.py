@@ -70,7 +70,7 @@ def bend(plan):
 
 
 @pytest.mark.parametrize("name", TURNING)
-def test_the_engine_turns_the_base_as_planned_and_to_the_goals_attitude(name):
+def test_mujoco_rotates_the_base_to_the_goal_attitude(name):
     plan = fp.plan(TURNING[name](), seed=0)
     flight, (s, *_) = flown(plan)
     turned, away, joints = departures(plan, flight, s)
@@ -85,7 +85,7 @@ def test_the_engine_turns_the_base_as_planned_and_to_the_goals_attitude(name):
     assert np.all(flight.impulses == 0.0)
 
 
-def test_the_engines_wheels_hold_the_base_while_postures_change_and_store_what_the_plan_says():
+def test_mujocos_wheels_store_the_momentum_that_is_planned():
     goal = gate().robot.configuration((10.0, 0.0, 0.0), (0.4, 0.0, 0.0))
     plan = fp.plan(gate(mode="attitude-held", reach_attitude=False, goal=goal), seed=0)
     flight, (s, rate, _) = flown(plan)

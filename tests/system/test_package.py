@@ -49,7 +49,7 @@ plan.write_html("plan.html")
 
 
 @pytest.mark.slow
-def test_the_wheel_plans_in_a_new_environment_outside_the_checkout(tmp_path):
+def test_the_built_wheel_plans_in_a_new_environment(tmp_path):
     quiet = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
 
     def run(*command):

@@ -106,7 +106,7 @@ def test_a_plan_file_that_misstates_its_replacements_is_refused(arm_plan, tmp_pa
         fp.Plan.from_dict(data)
 
 
-def test_verification_notices_a_replacement_that_does_not_hold_the_original(arm_plan):
+def test_verification_finds_a_replacement_that_is_too_small(arm_plan):
     robot = arm_plan.problem.robot
     for k, who in enumerate(("upper", "hand")):
         forged = list(robot.replacements)
@@ -126,7 +126,7 @@ def test_verification_notices_a_replacement_that_does_not_hold_the_original(arm_
 
 @given(seeds)
 @settings(max_examples=30)
-def test_distances_from_hulls_in_the_recheck_agree_with_those_of_trimesh(seed):
+def test_hull_distances_of_verification_agree_with_trimesh(seed):
     solid = blob(seed)
     shape = Shape("", np.eye(4), np.array(solid.vertices))
     centers = solid.center_mass + np.random.default_rng(seed).normal(size=(40, 3)) * 0.3

@@ -32,7 +32,7 @@ def test_stowed_arms_pass_the_ring_and_are_spread_again():
     assert np.max(np.diff(angles, append=angles[0] + 2 * np.pi)) < np.pi  # inside, not around it
 
 
-def test_arms_alone_turn_a_floating_satellite_about_an_axis_askew():
+def test_arms_rotate_a_floating_satellite_about_any_axis():
     problem = fp.load_scenario("spatial_turn")
     plan = fp.plan(problem, seed=0)
     report = plan.verify(50)
@@ -45,7 +45,7 @@ def test_arms_alone_turn_a_floating_satellite_about_an_axis_askew():
     assert end[7:] == pytest.approx(begin[7:], abs=1e-9)
 
 
-def test_the_satellite_flies_along_the_truss_and_its_tool_arrives():
+def test_the_satellites_tool_arrives_along_the_truss():
     problem = fp.load_scenario("inspection")
     plan = fp.plan(problem, seed=0)
     report = plan.verify(100)

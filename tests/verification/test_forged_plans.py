@@ -29,7 +29,7 @@ def moved(plan, **changes):
 
 @pytest.mark.parametrize("mode", ["free-flying", "attitude-held"])
 @pytest.mark.parametrize("divisions", [2, 3])
-def test_momentum_is_summed_sharply_where_arms_move_far_on_few_edges(mode, divisions):
+def test_momentum_is_sharp_where_arms_move_far_on_few_edges(mode, divisions):
     for seed in (7, 15, 16, 20):
         robot = random_robot(seed)
         ends = (robot.assemble(np.array([x, 0.0, 0.0]), rotations.IDENTITY, np.full(robot.nd, v))
@@ -41,7 +41,7 @@ def test_momentum_is_summed_sharply_where_arms_move_far_on_few_edges(mode, divis
         assert error < 1e-9
 
 
-def test_verification_notices_an_obstacle_that_the_planner_did_not_see(fig2a_plan):
+def test_verification_finds_an_obstacle_unknown_to_planning(fig2a_plan):
     problem = fig2a_plan.problem
     in_the_way = fig2a_plan.at(0.4123)[:3] + np.array([0.0, 0.0, 0.3])
     scene = fp.Scene(
@@ -95,7 +95,7 @@ def test_verification_notices_a_proof_that_claims_too_much(fig2a_plan):
     assert "the plan's proven clearance is" in " ".join(report.problems)
 
 
-def test_verification_does_not_depend_on_the_order_of_links_in_the_urdf(robot):
+def test_verification_ignores_the_order_of_links_in_the_urdf(robot):
     """Pinocchio lists shapes along the tree, the re-check as they stand in the file."""
     root = ElementTree.fromstring(robot.urdf)
     links = root.findall("link")

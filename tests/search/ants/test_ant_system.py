@@ -20,7 +20,7 @@ def small(point, seed, obstacles=6, delta=1.0, half_count=2, divisions=6, radii=
     return fp.Problem(point, scene, point.configuration(), goal, delta=delta, lattice=lattice)
 
 
-def test_equation_11_the_wheel_is_spun_in_proportion_to_pheromone_and_visibility(point):
+def test_equation_11_weights_the_roulette_wheel(point):
     problem = small(point, 0, obstacles=0)
     roadmap, rng = Roadmap(problem), np.random.default_rng(5)
     alpha, beta = 1.3, 2.0
@@ -54,7 +54,7 @@ def test_a_refused_edge_leaves_the_others_in_proportion(point):
     assert np.sum((counts - expected)[free] ** 2 / expected[free]) < 20.0
 
 
-def test_equations_12_and_13_pheromone_persists_by_rho_and_grows_by_q_over_f(point):
+def test_equations_12_and_13_update_the_pheromone(point):
     problem = small(point, 1, obstacles=2)
     planner = fp.AntSystem(ants=4, cycles=3, rho=0.6, Q=7.0, C=2.0)
     seen = []
@@ -76,7 +76,7 @@ def test_equations_12_and_13_pheromone_persists_by_rho_and_grows_by_q_over_f(poi
 
 @given(st.integers(0, 10_000))
 @settings(max_examples=60)
-def test_no_colony_beats_the_exact_optimum_and_no_path_is_said_only_where_there_is_none(seed):
+def test_no_colony_beats_the_exact_optimum(seed):
     point = fp.load_robot("point")
     problem = small(point, seed)
     try:

@@ -101,7 +101,7 @@ def test_every_variant_returns_verified_plans(change):
     assert np.all(np.diff(plan.history.best) <= 0)
 
 
-def test_local_search_never_makes_a_path_worse_and_respects_closed_ways():
+def test_local_search_improves_and_respects_closed_edges():
     roadmap = Roadmap(random_problem(3, 0.1))
     roadmap.prove_obvious()
     open_edges, _ = find_open_edges(roadmap.admissible, roadmap.status)
@@ -121,7 +121,7 @@ def test_local_search_never_makes_a_path_worse_and_respects_closed_ways():
     assert improved > 40
 
 
-def test_neighbourhoods_hold_the_node_and_displacements_along_the_axes():
+def test_neighbourhoods_hold_displacements_along_the_axes():
     line = np.arange(-4, 5)[:, None]
     near = neighbourhood(line, wide=False)
     assert near[:, 0].tolist() == list(range(9))
@@ -262,7 +262,7 @@ def test_numbers_of_colonies_workers_and_seconds_are_checked():
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_one_ctrl_c_ends_all_colonies_and_returns_the_best_so_far(workers):
+def test_one_ctrl_c_ends_all_colonies_with_the_best_path(workers):
     code = (
         "import ffsr_plan as fp\n"
         "p = fp.load_scenario('fig2a')\n"

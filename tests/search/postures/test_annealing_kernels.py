@@ -68,7 +68,7 @@ def shifts(grid, path, rng, count):
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_a_shift_costs_what_its_whole_path_costs_and_no_limit_above_that_refuses_it(name):
+def test_the_cost_of_a_shift_is_that_of_its_whole_path(name):
     grid, path = ground_and_path(name)
     current, workspace, told = uncosted_path(path), new_workspace(), 0
     path_cost(grid, current, WEIGHT)
@@ -129,7 +129,7 @@ def test_node_costs_follow_from_coals_clearances():
     assert node_cost(grid, 0.1, True) == pytest.approx(grid.clearance_weight / 0.1)
 
 
-def test_what_the_search_counts_is_the_objective_of_what_it_returns():
+def test_the_searchs_cost_is_the_objective_of_its_plan():
     plan = fp.plan(fp.load_scenario("gate"), fp.PostureAnnealing(ants=5, cycles=5), seed=0)
     assert plan.certificate.edges_refused == 0  # else the last search is not in the history
     assert plan.history.best[-1] == pytest.approx(plan.lattice_objective, rel=1e-9)

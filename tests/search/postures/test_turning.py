@@ -89,7 +89,7 @@ def test_finer_bins_change_little_in_the_oracle():
         assert fine.least(yaw) == pytest.approx(oracle().least(yaw), rel=2e-3)
 
 
-def test_the_oracle_agrees_with_every_path_tried_on_a_tiny_lattice():
+def test_the_oracle_agrees_with_all_paths_of_a_tiny_lattice():
     axes = [fp.PostureAxis(dict(a.joints), 1, 0.9) for a in LATTICE.postures]
     problem = turning(10, fp.Lattice(4, postures=axes))
     lattice, m = PostureLattice(problem), 4
@@ -150,7 +150,7 @@ def test_a_robot_that_nothing_holds_turns_too():
     assert plan.arrival_attitude_error < 1e-3
 
 
-def test_a_goal_that_the_arms_cannot_turn_to_is_refused_with_what_is_missing():
+def test_an_unreachable_goal_attitude_states_the_error():
     problem = turning(120)
     with pytest.raises(fp.AttitudeOutOfReach, match=r"of 120\.0 degrees") as caught:
         fp.plan(problem, seed=0)
@@ -162,12 +162,12 @@ def test_a_goal_that_the_arms_cannot_turn_to_is_refused_with_what_is_missing():
 
 
 @pytest.mark.parametrize("planner", [fp.LatticeOptimum(), fp.AntSystem()])
-def test_planners_that_need_a_cost_of_nodes_alone_refuse_and_say_why(planner):
+def test_planners_over_nodes_refuse_posture_axes_and_say_why(planner):
     with pytest.raises(fp.InvalidInput, match=r"posture-annealing.*depends on the path"):
         fp.plan(turning(10), planner)
 
 
-def test_the_same_seed_gives_the_same_plan_and_a_file_gives_it_back(tmp_path):
+def test_the_same_seed_and_a_file_give_the_same_plan(tmp_path):
     plan = quick()
     assert fp.plan(plan.problem, seed=0) == plan
     plan.save(tmp_path / "plan.json")
@@ -177,7 +177,7 @@ def test_the_same_seed_gives_the_same_plan_and_a_file_gives_it_back(tmp_path):
     assert loaded.verify(20).ok
 
 
-def test_the_correction_closes_a_missed_attitude_and_keeps_the_ends():
+def test_the_correction_closes_the_error_and_keeps_the_ends():
     motion = quick().motion
     robot, path = motion.robot, motion.joint_values
     directions = displacements(quick().problem, np.tile(path[0], (len(path), 1)))
@@ -188,7 +188,7 @@ def test_the_correction_closes_a_missed_attitude_and_keeps_the_ends():
     assert np.array_equal(bent[[0, -1]], path[[0, -1]])
 
 
-def test_the_correction_keeps_limits_and_held_corners_and_bends_the_others():
+def test_the_correction_keeps_limits_and_held_corners():
     motion = quick().motion
     robot, path = motion.robot, motion.joint_values
     directions = displacements(quick().problem, np.tile(path[0], (len(path), 1)))
@@ -242,7 +242,7 @@ def spatial(degrees, axis):
     return fp.plan(spatial_problem(degrees, axis), seed=0)
 
 
-def test_a_small_loop_turns_the_base_by_its_area_times_the_curvature():
+def test_a_small_loop_rotates_by_area_times_curvature():
     rng = np.random.default_rng(0)
     robot = spatial_problem(10, (1, 0, 0)).robot
     for _ in range(5):
@@ -383,6 +383,6 @@ def test_a_goal_attitude_needs_arms_that_react_and_posture_axes():
         ("<joint name='left_1'/>", "left_1"),
     ],
 )
-def test_postures_outside_the_limits_or_of_unknown_joints_are_refused(text, message):
+def test_postures_beyond_limits_or_of_no_joint_are_refused(text, message):
     with pytest.raises(fp.InvalidInput, match=message):
         _ = with_states(text).postures

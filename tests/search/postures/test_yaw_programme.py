@@ -95,7 +95,7 @@ def every_path(lattice):
 
 
 @pytest.mark.parametrize("degrees", [0, 3, -6])
-def test_the_programme_agrees_with_every_path_tried_on_a_tiny_lattice(degrees):
+def test_the_programme_agrees_with_all_paths_when_tiny(degrees):
     lattice = tiny(degrees)
     cost, states, hit = every_path(lattice)
     way = cheapest_way(lattice, FINE, WIDE)
@@ -116,7 +116,7 @@ def test_the_programmes_value_is_the_cost_of_its_path(degrees, bins):
 
 
 @pytest.mark.parametrize("degrees", [5, -8])
-def test_the_colony_is_not_below_the_programme_by_more_than_bins_explain(degrees):
+def test_the_colony_is_below_the_programme_by_bins_at_most(degrees):
     lattice = small(degrees)
     least = cheapest_way(lattice, 1601).cost
     assert cheapest_way(lattice, 801).cost == pytest.approx(least, rel=2e-3)
@@ -142,7 +142,7 @@ def test_a_known_cost_spares_queries_and_changes_nothing(degrees):
     assert below.queries < ladder.queries < plain.queries
 
 
-def test_no_path_costs_less_than_the_cost_to_go_of_the_base_origin():
+def test_the_base_origins_cost_to_go_is_a_lower_bound():
     lattice = small(5)
     grid = posture_grid(lattice)
     ahead, m = least_to_go(lattice, grid), len(grid.step_rotations)
