@@ -17,6 +17,7 @@ from ffsr_plan.robots.collision_shapes import Containers, convex, sharpen
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.solids import Shape, sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies
+from tests.helpers import closed_forms
 from tests.helpers.builders import (
     box,
     capsule,
@@ -30,8 +31,6 @@ from tests.helpers.builders import (
     sphere,
     urdf,
 )
-from tests.helpers.closed_forms import clearance as scalar_clearance
-from tests.helpers.closed_forms import clearances
 from tests.helpers.single_link_robots import MASS, blob, inside_out, one_link
 
 seeds = st.integers(0, 10_000)
@@ -43,9 +42,9 @@ def test_clearance_of_capsules_equals_the_closed_form(seed):
     robot, rng = random_robot(seed, solids=(capsule,)), np.random.default_rng(seed)
     scene = random_scene(rng, low=-2, high=2)
     q = random_configuration(robot, rng)
-    expected = scalar_clearance(robot, scene, q)
+    expected = closed_forms.clearance(robot, scene, q)
     assert fp.clearance(robot, scene, q) == pytest.approx(expected, abs=1e-12)
-    assert clearances(robot, scene, q[None])[0] == pytest.approx(expected, abs=1e-12)
+    assert closed_forms.clearances(robot, scene, q[None])[0] == pytest.approx(expected, abs=1e-12)
 
 
 @given(seeds, st.sampled_from(KINDS))
@@ -55,7 +54,7 @@ def test_clearance_with_cylinders_equals_the_independent_one(seed, kind):
     scene = random_scene(rng, low=-1, high=1)
     q = random_configuration(robot, rng, spread=0.5)
     assert fp.clearance(robot, scene, q) == pytest.approx(
-        clearances(robot, scene, q[None])[0], abs=1e-9
+        closed_forms.clearances(robot, scene, q[None])[0], abs=1e-9
     )
     assert Bodies(robot.urdf, "", robot.replacements).uncovered({}) == []
 
