@@ -60,7 +60,7 @@ def test_planners_that_know_no_attitude_refuse_and_say_why():
     for planner in (fp.LatticeOptimum(), fp.AntSystem()):
         with pytest.raises(fp.InvalidInput, match="depends on the path"):
             fp.plan(problem, planner)
-    with pytest.raises(fp.InvalidInput, match="no one attitude"):
+    with pytest.raises(fp.InvalidInput, match="no single attitude"):
         fp.Roadmap(problem)
 
 
