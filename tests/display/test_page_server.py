@@ -136,6 +136,7 @@ def test_a_server_on_all_addresses_would_be_noticed():
         [""],
         ["127.0.0.1", "evil.example"],
         ["127.0.0.1@evil.example"],
+        ["evil-localhost"],
     ],
     ids=str,
 )
