@@ -3,9 +3,10 @@
     python -m benchmarks.studies.attitude.turning
 
 The planar dual-arm robot turns its base by 5 to 75 degrees, either way, and ends in the posture it
-began with; lengths are compared with those of tests/helpers/turning_dynamic_programme.py. A robot with two arms of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last,
-the parts of the search are compared with each other. Writes
-docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
+began with; lengths are compared with those of tests/helpers/turning_dynamic_programme.py. A robot
+with two arms of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last, the
+parts of the search are compared with each other. Writes docs/benchmarks/turning.md. The defaults
+take about 40 minutes on a busy machine.
 """
 
 import argparse

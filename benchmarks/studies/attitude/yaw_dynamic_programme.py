@@ -2,8 +2,9 @@
 
 States are (layer, base offset, posture, yaw bin). Steps and nodes have the costs of the colony, by
 the same functions; a collision is forbidden here. As in
-`tests/helpers/turning_dynamic_programme.py`, each state keeps the true yaw of its cheapest path, so that rounding does not add up over the layers, and
-its clearance is computed at that yaw: one distance query for each state that is reached.
+`tests/helpers/turning_dynamic_programme.py`, each state keeps the true yaw of its cheapest path, so
+that rounding does not add up over the layers, and its clearance is computed at that yaw: one
+distance query for each state that is reached.
 
 The value is the cost of the path that is returned. It is no less than the optimum of the lattice
 and may exceed it: of two paths into one bin only the cheaper one is kept, although the other,
