@@ -30,21 +30,21 @@ from ffsr_plan.core.errors import (
     WorkerDied,
 )
 from ffsr_plan.dynamics import momentum
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.inverse_dynamics import States
-from ffsr_plan.dynamics.mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
 from ffsr_plan.lattice.certificate import Certificate, Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.roadmap import Roadmap
-from ffsr_plan.planning.plan import Plan
-from ffsr_plan.planning.planner import plan, refine
+from ffsr_plan.planning.certified_plan import Plan
+from ffsr_plan.planning.plan_and_refine import plan, refine
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Axis, Lattice
 from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict
-from ffsr_plan.proof.single_edge import EdgeProof, certify_edge
+from ffsr_plan.proof.single_edge_proof import EdgeProof, certify_edge
 from ffsr_plan.robots.collision_shapes import Replacement
 from ffsr_plan.robots.loading import load_robot, robot_names
 from ffsr_plan.robots.robot import Components, SpaceRobot
@@ -56,7 +56,7 @@ from ffsr_plan.scene import generators
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
-from ffsr_plan.search.lattice_optimum import LatticeOptimum
+from ffsr_plan.search.optimum_planner import LatticeOptimum
 from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
 from ffsr_plan.search.records import Cycle, History, SearchResult, Solution, Trails
 from ffsr_plan.trajectory.timed_plan import TimedPlan

@@ -11,9 +11,9 @@ from typing import Annotated
 
 import typer
 
-from ffsr_plan.cli.files import check_replacement, check_target, unused_path
 from ffsr_plan.cli.planning import LiveOptions, Options, plan_and_report
-from ffsr_plan.cli.tables import flight_table, report_table, robot_table
+from ffsr_plan.cli.printed_tables import flight_table, report_table, robot_table
+from ffsr_plan.cli.result_files import check_replacement, check_target, unused_path
 from ffsr_plan.cli.terminal import errors_on_stderr, out_console, with_spinner
 from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
 
@@ -119,7 +119,7 @@ def verify(
 ) -> None:
     """Verify a saved plan by dense samples, independently of the planner."""
     with errors_on_stderr():
-        from ffsr_plan.planning.plan import Plan
+        from ffsr_plan.planning.certified_plan import Plan
 
         loaded = Plan.load(plan_file)
         report = with_spinner("verifying", lambda: loaded.verify(samples))
@@ -139,7 +139,7 @@ def export(
 ) -> None:
     """Write the path of a saved plan as a CSV table with units in its header."""
     with errors_on_stderr():
-        from ffsr_plan.planning.plan import Plan
+        from ffsr_plan.planning.certified_plan import Plan
 
         check_replacement("PATH.csv", table, force)
         Plan.load(plan_file).to_csv(table, samples)
@@ -156,7 +156,7 @@ def gif(
 ) -> None:
     """Write a saved plan as an animated GIF."""
     with errors_on_stderr():
-        from ffsr_plan.planning.plan import Plan
+        from ffsr_plan.planning.certified_plan import Plan
 
         check_replacement("PATH.gif", picture, force)
         view = "side" if side_view else "path"
@@ -186,7 +186,7 @@ def timed(
 ) -> None:
     """Time a saved plan as fast as the limits allow: duration, delta-v, thrust, torques."""
     with errors_on_stderr():
-        from ffsr_plan.planning.plan import Plan
+        from ffsr_plan.planning.certified_plan import Plan
 
         if csv is not None:
             check_replacement("--csv", csv, force)
@@ -215,7 +215,7 @@ def view(
 ) -> None:
     """Show a saved plan in the browser, served on 127.0.0.1 until Ctrl-C."""
     with errors_on_stderr():
-        from ffsr_plan.planning.plan import Plan
+        from ffsr_plan.planning.certified_plan import Plan
 
         Plan.load(plan_file).show(port, block=True, open_browser=browser)
 
@@ -235,7 +235,7 @@ def schema() -> None:
     """Print the JSON Schema of scenario files, for editors that complete and check TOML."""
     import json
 
-    from ffsr_plan.scenario_files.scenario_tables import schema as scenario_schema
+    from ffsr_plan.scenario_files.scenario_schema import schema as scenario_schema
 
     typer.echo(json.dumps(scenario_schema(), indent=2))
 

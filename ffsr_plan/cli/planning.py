@@ -8,13 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ffsr_plan.cli.files import write_results
-from ffsr_plan.cli.tables import plan_table
+from ffsr_plan.cli.printed_tables import plan_table
+from ffsr_plan.cli.result_files import write_results
 from ffsr_plan.cli.terminal import err_console, out_console, with_spinner
 from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
 
 if TYPE_CHECKING:
-    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.scenario_files.scenario import Scenario
     from ffsr_plan.search.records import Cycle
 
@@ -92,7 +92,7 @@ def plan_and_report(source: str, options: Options, target: Path | None, check: b
 def _with_options(scenario: Scenario, options: Options) -> Scenario:
     """The scenario with planner, seed and refinement of the command line where they are given."""
     from ffsr_plan.core.checks import one_of, whole_number
-    from ffsr_plan.plans.planners import PLANNERS
+    from ffsr_plan.plans.planner_registry import PLANNERS
 
     changes: dict[str, Any] = {}
     if options.planner is not None:
@@ -132,7 +132,7 @@ def _plan_with_progress(
     """Plan with a progress bar on a terminal if the search takes more than a second."""
     from rich.progress import Progress
 
-    from ffsr_plan.planning.planner import plan as make_plan
+    from ffsr_plan.planning.plan_and_refine import plan as make_plan
 
     begin, on_terminal = time.monotonic(), err_console.is_terminal
     with Progress(console=err_console, transient=True, auto_refresh=False) as progress:

@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from ffsr_plan.collision.nearest_kernels import nearest_pairs, nearest_to_each, pairs_below
+from ffsr_plan.collision.nearest_sphere_kernels import nearest_pairs, nearest_to_each, pairs_below
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import InvalidInput

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ffsr_plan.core.formatting import proven
-from ffsr_plan.display.plan_tracks import drawn_solid, motion_frames, trail_segments
+from ffsr_plan.display.picture_data import drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.projection import outlines, view_axes
 
 if TYPE_CHECKING:

@@ -10,11 +10,11 @@ from functools import cache
 from ffsr_plan.core.checks import number, truth
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display.browser import in_notebook, open_in_browser
-from ffsr_plan.display.cycle_snapshot import Snapshot, commands, take
+from ffsr_plan.display.cycle_picture import Snapshot, commands, take
 from ffsr_plan.display.meshcat_objects import CommandLog
-from ffsr_plan.display.page import page
 from ffsr_plan.display.page_server import PageServer
-from ffsr_plan.display.plan_tracks import drawn_solid, motion_frames
+from ffsr_plan.display.picture_data import drawn_solid, motion_frames
+from ffsr_plan.display.plan_page import page
 from ffsr_plan.display.scene_objects import add_ends, add_obstacles, set_up
 from ffsr_plan.display.web.html_template import html_page
 from ffsr_plan.lattice.layered_lattice import LayeredLattice

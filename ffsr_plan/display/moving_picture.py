@@ -12,7 +12,7 @@ from ffsr_plan.core.checks import one_of, whole_number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
-from ffsr_plan.display.plan_tracks import MotionFrames, drawn_solid, motion_frames, trail_segments
+from ffsr_plan.display.picture_data import MotionFrames, drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.projection import Outline, outlines, view_axes, visible_shapes
 from ffsr_plan.display.scene_objects import TIPS, TRACK, glow
 

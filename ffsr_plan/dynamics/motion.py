@@ -16,7 +16,7 @@ import numpy as np
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray, frozen
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import SpaceRobot

@@ -285,7 +285,7 @@ def rule_out(
     depth, t = -verdict.least_clearance * (1.0 - 1e-9), verdict.time
     if depth <= 0.0:
         return
-    from ffsr_plan.lattice.refusal_kernel import refuse_near
+    from ffsr_plan.lattice.refused_neighbours_kernel import refuse_near
 
     met = (1.0 - t) * tails[edge[0]] + t * heads[edge[1]]
     refuse_near(status, tails, heads, t, met, depth)

@@ -20,7 +20,7 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.plans.plan_data import PlanData
-from ffsr_plan.plans.planners import PLANNERS
+from ffsr_plan.plans.planner_registry import PLANNERS
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import Containers

@@ -10,8 +10,8 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, whole_number
 from ffsr_plan.core.errors import GoalInCollision, InvalidInput, PoseOutOfReach, unknown_name
 from ffsr_plan.core.rotations import from_angles, matrix
-from ffsr_plan.dynamics.mode import Mode
-from ffsr_plan.problem.pose_target import PoseTarget, end_configuration, pose_error, pose_jacobian
+from ffsr_plan.dynamics.actuation_mode import Mode
+from ffsr_plan.problem.pose_error import PoseTarget, end_configuration, pose_error, pose_jacobian
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 

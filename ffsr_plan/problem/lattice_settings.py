@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated
 
-from ffsr_plan.core.rules import ByKey, Number, WholeNumber
+from ffsr_plan.core.setting_rules import ByKey, Number, WholeNumber
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
 

@@ -13,9 +13,9 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import angle_between, to_angles
-from ffsr_plan.core.rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
+from ffsr_plan.core.setting_rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.robot import SpaceRobot

@@ -16,13 +16,13 @@ from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import GoalInCollision, NoPath, StartInCollision
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
-from ffsr_plan.proof.edges import (
+from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
+from ffsr_plan.proof.motion_edges import (
     NominalPlacements,
     ObstacleEdge,
     SelfCollisionEdge,
     joint_configuration,
 )
-from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
 from ffsr_plan.scene.scene import Scene
 
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance

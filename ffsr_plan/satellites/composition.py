@@ -17,7 +17,7 @@ import numpy as np
 
 from ffsr_plan.core.checks import number, one_of
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.rules import NamedNumbers, Numbers, Rule, Text, Vector
+from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, Rule, Text, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.meshes.box_cover import boxes_around
 from ffsr_plan.meshes.hull_reduction import beyond

@@ -8,9 +8,9 @@ from typing import Annotated, Any, ClassVar
 
 from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.rules import Truth, WholeNumber
+from ffsr_plan.core.setting_rules import Truth, WholeNumber
 from ffsr_plan.core.settings import from_mapping, part_of, settings
-from ffsr_plan.plans.planners import PLANNERS, Planner, default_planner
+from ffsr_plan.plans.planner_registry import PLANNERS, Planner, default_planner
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.posture_axes import PostureTarget
 

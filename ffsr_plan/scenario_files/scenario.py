@@ -12,9 +12,9 @@ from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.settings import from_mapping
-from ffsr_plan.plans.planners import Planner
+from ffsr_plan.plans.planner_registry import Planner
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.scenario_files.scenario_tables import ScenarioFile
+from ffsr_plan.scenario_files.scenario_schema import ScenarioFile
 from ffsr_plan.scene.scene import Scene
 
 if sys.version_info >= (3, 11):

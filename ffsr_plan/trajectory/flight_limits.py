@@ -11,7 +11,7 @@ import numpy as np
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
-from ffsr_plan.core.rules import Number, Rule
+from ffsr_plan.core.setting_rules import Number, Rule
 from ffsr_plan.core.settings import settings
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.trajectory.straight_runs import StraightRuns

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import (
+from tests.helpers.closed_forms import clearance as closed_form
+from tests.helpers.urdf_builders import (
     box,
     inertial,
     link,
@@ -19,7 +20,6 @@ from tests.helpers.builders import (
     random_scene,
     urdf,
 )
-from tests.helpers.closed_forms import clearance as closed_form
 
 seeds = st.integers(0, 10_000)
 

@@ -14,7 +14,7 @@ import pytest
 from pydantic import TypeAdapter
 
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.rules import (
+from ffsr_plan.core.setting_rules import (
     ByKey,
     NamedNumbers,
     NoneMeans,

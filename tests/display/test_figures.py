@@ -3,7 +3,7 @@
 import pytest
 
 from ffsr_plan.display import figures
-from tests.helpers.pictures import colours_and_edges
+from tests.helpers.picture_measures import colours_and_edges
 
 
 def test_the_figures_are_drawn_and_not_blank(fig2a_plan, tmp_path):

@@ -13,7 +13,7 @@ from PIL import Image
 
 import ffsr_plan as fp
 from ffsr_plan.display import live_view
-from ffsr_plan.display.page import page
+from ffsr_plan.display.plan_page import page
 from tests.helpers import chromium
 from tests.helpers.watched_cycles import cycles_of, unpacked
 

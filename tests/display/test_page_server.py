@@ -13,8 +13,8 @@ from urllib.parse import urlsplit
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.display.page import page
 from ffsr_plan.display.page_server import PageServer
+from ffsr_plan.display.plan_page import page
 
 ENVIRONMENT = {**os.environ, "BROWSER": "true"}  # of subprocesses: nothing opens
 

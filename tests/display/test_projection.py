@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.display.plan_tracks import motion_frames
+from ffsr_plan.display.picture_data import motion_frames
 from ffsr_plan.display.projection import convex_outline, outlines, view_axes, visible_shapes
 
 

@@ -11,7 +11,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.dynamics import momentum
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import (
+from tests.helpers.urdf_builders import (
     box,
     inertial,
     joint,

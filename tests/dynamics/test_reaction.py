@@ -9,7 +9,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.momentum import connections
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import box, inertial, joint, link, random_robot, urdf
+from tests.helpers.urdf_builders import box, inertial, joint, link, random_robot, urdf
 
 seeds = st.integers(0, 10_000)
 IDENTITY = rotations.IDENTITY

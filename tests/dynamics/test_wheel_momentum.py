@@ -13,7 +13,7 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import rest_to_rest, wheel_momentum
 from ffsr_plan.plans import plan_data
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import (
+from tests.helpers.urdf_builders import (
     box,
     inertial,
     joint,

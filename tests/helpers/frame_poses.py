@@ -5,7 +5,7 @@ import pinocchio as pin
 
 from ffsr_plan.core.rotations import to_angles
 from ffsr_plan.dynamics.motion import Motion
-from tests.helpers.builders import random_configuration, random_robot
+from tests.helpers.urdf_builders import random_configuration, random_robot
 
 
 def pose_of(robot, q, frame):

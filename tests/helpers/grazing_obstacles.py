@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.verification.solids import least_sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies, pose
-from tests.helpers.builders import capsule, cylinder, random_robot
+from tests.helpers.urdf_builders import capsule, cylinder, random_robot
 
 SAMPLES = 2000
 TOLERANCE = 1e-4

@@ -5,7 +5,7 @@ import numpy as np
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.trajectory.flight_limits import read_limits
 from ffsr_plan.trajectory.timed_plan import timed
-from tests.helpers.builders import random_configuration, random_robot
+from tests.helpers.urdf_builders import random_configuration, random_robot
 
 ALL = (
     "joint_velocity", "joint_acceleration", "joint_jerk", "joint_torque", "base_velocity",

@@ -15,7 +15,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.proof.link_bounds import link_motion
 from ffsr_plan.proof.travel_bound import TravelBound
-from tests.helpers.random_trees import Limb, Z, at, body, random_tree
+from tests.helpers.random_robots import Limb, Z, at, body, random_tree
 
 SAMPLES = 24
 ROUNDING = 1e-12

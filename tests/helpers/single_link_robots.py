@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import inertial, link, urdf
+from tests.helpers.urdf_builders import inertial, link, urdf
 
 MASS = inertial(2.0, (1.0, 1.0, 1.0))
 

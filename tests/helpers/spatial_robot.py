@@ -15,7 +15,7 @@ import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.momentum import connections
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import box, capsule, inertial, joint, link, sphere, urdf
+from tests.helpers.urdf_builders import box, capsule, inertial, joint, link, sphere, urdf
 
 BUS, LIMB, REACH = 0.5, 0.6, 0.45  # edge of the bus, length of a limb, shoulder from the middle [m]
 BUS_MASS, LIMB_MASS = 20.0, 4.0  # kg

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.lattice.layered_lattice import LayeredLattice, path_frame
-from tests.helpers.builders import random_robot
+from tests.helpers.urdf_builders import random_robot
 
 directions = st.tuples(*[st.floats(-5, 5)] * 3).map(np.array).filter(lambda v: np.any(abs(v) > 0.1))
 

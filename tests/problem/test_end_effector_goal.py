@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core.rotations import to_angles
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import (
+from tests.helpers.frame_poses import angles_of, pose_of, some_goal
+from tests.helpers.urdf_builders import (
     box,
     inertial,
     joint,
@@ -21,7 +22,6 @@ from tests.helpers.builders import (
     sphere,
     urdf,
 )
-from tests.helpers.frame_poses import angles_of, pose_of, some_goal
 
 seeds = st.integers(0, 100_000)
 UPPER, FORE, SHOULDER = 0.7, 0.5, 0.3

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.lattice.roadmap import Roadmap
-from tests.helpers.builders import random_scene
+from tests.helpers.urdf_builders import random_scene
 
 
 def point_problem(point, seed, **changes):

@@ -7,15 +7,15 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.travel_bound import TravelBound
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.separation import separation
 from ffsr_plan.verification.urdf_reading import Bodies, pose
-from tests.helpers.builders import box, inertial, joint, link, random_robot, urdf
-from tests.helpers.random_trees import random_tree
+from tests.helpers.random_robots import random_tree
+from tests.helpers.urdf_builders import box, inertial, joint, link, random_robot, urdf
 
 seeds = st.integers(0, 100_000)
 SAMPLES = 60

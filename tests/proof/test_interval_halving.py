@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.proof.interval_halving import ROUNDING, certify, clearance_bound
-from tests.helpers.builders import random_configuration, random_robot, random_scene
 from tests.helpers.closed_forms import clearances
+from tests.helpers.urdf_builders import random_configuration, random_robot, random_scene
 
 seeds = st.integers(0, 100_000)
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ffsr_plan.dynamics.momentum import connections
-from tests.helpers.random_trees import at, body, dot, put_together, random_tree
+from tests.helpers.random_robots import at, body, dot, put_together, random_tree
 from tests.helpers.sampled_travel import (
     ROUNDING,
     SAMPLES,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tests.helpers.random_trees import Z, at, body, dot, put_together
+from tests.helpers.random_robots import Z, at, body, dot, put_together
 from tests.helpers.sampled_travel import SAMPLES, STILL, SampledEdge, limb, tightness
 
 X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)

@@ -18,7 +18,8 @@ from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.solids import Shape, sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies
 from tests.helpers import closed_forms
-from tests.helpers.builders import (
+from tests.helpers.single_link_robots import MASS, blob, inside_out, one_link
+from tests.helpers.urdf_builders import (
     box,
     capsule,
     cylinder,
@@ -31,7 +32,6 @@ from tests.helpers.builders import (
     sphere,
     urdf,
 )
-from tests.helpers.single_link_robots import MASS, blob, inside_out, one_link
 
 seeds = st.integers(0, 10_000)
 KINDS = ("hull", "capsule")

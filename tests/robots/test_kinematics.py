@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.robots.kinematics import Tree
-from tests.helpers.builders import random_robot
-from tests.helpers.random_trees import random_tree
+from tests.helpers.random_robots import random_tree
+from tests.helpers.urdf_builders import random_robot
 
 COUNT = 3
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.core.bundled_files import folder
-from tests.helpers.builders import random_configuration, random_robot
+from tests.helpers.urdf_builders import random_configuration, random_robot
 from tools import make_planar_dual_arm
 
 

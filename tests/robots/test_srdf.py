@@ -5,7 +5,7 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.urdf_reading import Bodies
-from tests.helpers.builders import box, inertial, joint, link, urdf
+from tests.helpers.urdf_builders import box, inertial, joint, link, urdf
 
 CUBE = inertial(1.0, (1.0, 1.0, 1.0)) + box((0.2, 0.2, 0.2))
 CHAIN = urdf(

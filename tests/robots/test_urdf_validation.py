@@ -8,7 +8,17 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.robots import urdf_validation
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import box, capsule, cylinder, inertial, joint, link, mesh, sphere, urdf
+from tests.helpers.urdf_builders import (
+    box,
+    capsule,
+    cylinder,
+    inertial,
+    joint,
+    link,
+    mesh,
+    sphere,
+    urdf,
+)
 
 MASS = inertial(1.0, (1.0, 1.0, 1.0))
 FAR = (0.0, -1000.5, 0.0)

@@ -8,8 +8,8 @@ import ffsr_plan as fp
 from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core.bundled_files import folder
 from ffsr_plan.robots.summary import reach_bound
-from tests.helpers.builders import capsule, inertial, joint, link, sphere, urdf
 from tests.helpers.spatial_robot import curvatures
+from tests.helpers.urdf_builders import capsule, inertial, joint, link, sphere, urdf
 from tools import make_satellites
 
 NAMES = ("satellite_ur5", "spatial_dual_arm")

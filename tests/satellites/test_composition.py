@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import ffsr_plan as fp
 from ffsr_plan.satellites import arms
-from tests.helpers.builders import (
+from tests.helpers.urdf_builders import (
     box,
     capsule,
     inertial,

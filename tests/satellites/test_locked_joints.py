@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 
 import ffsr_plan as fp
-from tests.helpers.builders import (
+from tests.helpers.urdf_builders import (
     inertial,
     joint,
     link,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from tests.helpers.builders import random_scene
+from tests.helpers.urdf_builders import random_scene
 
 
 def written(tmp_path, text, name="debris.csv"):

@@ -10,8 +10,8 @@ import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.scene.sphere_tree import sphere_tree
-from tests.helpers.builders import capsule, cylinder, random_configuration, random_robot
 from tests.helpers.closed_forms import clearances, shape_distance
+from tests.helpers.urdf_builders import capsule, cylinder, random_configuration, random_robot
 
 seeds = st.integers(0, 100_000)
 

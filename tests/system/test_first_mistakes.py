@@ -8,7 +8,7 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.scene import generators
-from tests.helpers.builders import box, inertial, joint, link, urdf
+from tests.helpers.urdf_builders import box, inertial, joint, link, urdf
 
 GOOD = inertial(2.0, (0.1, 0.2, 0.25))
 NAN = float("nan")

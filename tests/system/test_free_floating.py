@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.dynamics.motion import Motion
-from tests.helpers.builders import random_configuration, random_robot, random_scene
+from tests.helpers.urdf_builders import random_configuration, random_robot, random_scene
 
 seeds = st.integers(0, 100_000)
 

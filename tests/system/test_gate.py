@@ -66,7 +66,7 @@ def test_planners_that_know_no_attitude_refuse_and_say_why():
 
 def test_a_page_and_pictures_show_the_way_through_the_gate(tmp_path):
     from ffsr_plan.display.figures import write_figures
-    from ffsr_plan.display.page import page
+    from ffsr_plan.display.plan_page import page
 
     plan = fp.plan(fp.load_scenario("gate"), seed=0)
     assert len(plan.trails.layer) > 0

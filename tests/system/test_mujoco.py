@@ -7,7 +7,7 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
-from tests.helpers.builders import random_configuration, random_robot, random_scene
+from tests.helpers.urdf_builders import random_configuration, random_robot, random_scene
 
 mujoco = pytest.importorskip("mujoco", minversion="4")
 

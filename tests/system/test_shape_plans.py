@@ -12,8 +12,8 @@ from ffsr_plan.robots.collision_shapes import Containers
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.solids import Shape, least_sphere_distance, sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies
-from tests.helpers.builders import box, capsule, cylinder, inertial, joint, link, mesh, urdf
 from tests.helpers.single_link_robots import MASS, blob, inside_out, one_link
+from tests.helpers.urdf_builders import box, capsule, cylinder, inertial, joint, link, mesh, urdf
 
 seeds = st.integers(0, 10_000)
 
@@ -141,7 +141,7 @@ def test_hull_distances_of_verification_agree_with_trimesh(seed):
 
 def test_a_page_and_pictures_can_be_made_of_all_kinds_of_shapes(arm_plan, tmp_path):
     from ffsr_plan.display.figures import write_figures
-    from ffsr_plan.display.page import page
+    from ffsr_plan.display.plan_page import page
 
     assert page(arm_plan) == page(arm_plan)
     assert len(write_figures(arm_plan, tmp_path)) == 3

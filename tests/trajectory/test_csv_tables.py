@@ -10,7 +10,7 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import box, inertial, joint, link, urdf
+from tests.helpers.urdf_builders import box, inertial, joint, link, urdf
 
 
 @pytest.fixture(scope="module")

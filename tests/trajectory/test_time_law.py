@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.trajectory.straight_runs import StraightRuns, straight_runs
 from ffsr_plan.trajectory.time_law import time_law

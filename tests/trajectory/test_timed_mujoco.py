@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from tests.helpers.random_motions import USUAL, bent_motion, flown, inside
 
 mujoco = pytest.importorskip("mujoco", minversion="4")

@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import wheel_momentum
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import box, inertial, joint, link, urdf
 from tests.helpers.random_motions import USUAL, bent_motion, flown, inside, straight_motion
+from tests.helpers.urdf_builders import box, inertial, joint, link, urdf
 
 SEEDS = (7, 39)  # robots with hinges and slides
 seeds = st.integers(0, 10_000)

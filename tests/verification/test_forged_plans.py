@@ -10,7 +10,7 @@ import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import frozen
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import random_robot
+from tests.helpers.urdf_builders import random_robot
 
 
 def test_full_verification_of_one_plan(fig2a_plan):

@@ -14,7 +14,8 @@ from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification import solids
 from ffsr_plan.verification.separation import separation
 from ffsr_plan.verification.urdf_reading import Bodies, pose
-from tests.helpers.builders import (
+from tests.helpers.closed_forms import clearance, clearances
+from tests.helpers.urdf_builders import (
     box,
     cylinder,
     inertial,
@@ -25,7 +26,6 @@ from tests.helpers.builders import (
     random_scene,
     urdf,
 )
-from tests.helpers.closed_forms import clearance, clearances
 
 seeds = st.integers(0, 10_000)
 

@@ -3,10 +3,10 @@
     python -m benchmarks.studies.attitude.turning
 
 The planar dual-arm robot turns its base by 5 to 75 degrees, either way, and ends in the posture it
-began with; lengths are compared with the dynamic programme of tests/helpers/turning_programme.py.
-A robot with two arms of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last,
-the parts of the search are compared with each other. Writes
-docs/benchmarks/turning.md. The defaults take about 40 minutes on a busy machine.
+began with; lengths are compared with those of tests/helpers/turning_dynamic_programme.py. A robot
+with two arms of three joints (tests/helpers/spatial_robot.py) turns about five axes. Last, the
+parts of the search are compared with each other. Writes docs/benchmarks/turning.md. The defaults
+take about 40 minutes on a busy machine.
 """
 
 import argparse
@@ -25,7 +25,7 @@ from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from tests.helpers.spatial_robot import spatial_problem
-from tests.helpers.turning_programme import turning_oracle
+from tests.helpers.turning_dynamic_programme import turning_oracle
 
 REST = {"left_2": 0.8, "right_2": -0.8}
 LATTICE = fp.Lattice(

@@ -23,7 +23,7 @@ from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.proof.link_bounds import link_motion
 from ffsr_plan.proof.travel_bound import TravelBound
 from ffsr_plan.robots.kinematics import Tree, turned
-from tests.helpers.random_trees import random_tree
+from tests.helpers.random_robots import random_tree
 
 STEPS = (0.03, 0.1, 0.3, 1.0)
 """Largest change of a joint over an edge [rad or m]."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.errors import InternalError, PlanningError
-from ffsr_plan.core.rules import Number, WholeNumber
+from ffsr_plan.core.setting_rules import Number, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.edge_states import REFUSED, UNKNOWN
 from ffsr_plan.lattice.roadmap import Roadmap

@@ -8,7 +8,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.core.errors import InternalError, PlanningError
-from ffsr_plan.core.rules import Number, Truth, WholeNumber
+from ffsr_plan.core.setting_rules import Number, Truth, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from ffsr_plan.core.rules import Number, Truth, WholeNumber
+from ffsr_plan.core.setting_rules import Number, Truth, WholeNumber
 from ffsr_plan.core.settings import settings
 
 PositivePair = tuple[Annotated[float, Number(above=0.0)], Annotated[float, Number(above=0.0)]]

@@ -16,10 +16,10 @@ from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.rotations import slerp
 from ffsr_plan.search.postures.annealing_kernels import anneal, uncosted_path
 from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
+from ffsr_plan.search.postures.ant_tour_kernels import cost_to_go, lay_pheromone, walk
 from ffsr_plan.search.postures.cost_kernels import PostureGrid, path_cost
-from ffsr_plan.search.postures.posture_grid import without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
-from ffsr_plan.search.postures.walk_kernels import cost_to_go, lay_pheromone, walk
+from ffsr_plan.search.postures.posture_lattice_arrays import without_edge
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, Trails
 
 _BEST_LAYS_EVERY = 3  # cycles; in the others the best ant of the cycle lays pheromone

@@ -26,8 +26,8 @@ from ffsr_plan.search.postures.path_proof import (
     objective_of,
     prove_path,
 )
-from ffsr_plan.search.postures.posture_grid import posture_grid
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
+from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
 from ffsr_plan.search.records import History, SearchMonitor, SearchRequest, Solution
 from ffsr_plan.search.workers import run_on_workers
 

@@ -9,7 +9,7 @@ import ffsr_plan as fp
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.ants.ant_system import Walk
 from tests.helpers.brute_force import first_layer_out_of_reach, optimum
-from tests.helpers.builders import random_scene
+from tests.helpers.urdf_builders import random_scene
 
 
 def small(point, seed, obstacles=6, delta=1.0, half_count=2, divisions=6, radii=(0.2, 0.9)):

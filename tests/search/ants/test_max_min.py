@@ -18,7 +18,7 @@ from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.ants.local_search_kernels import improve, neighbourhood, path_cost
 from ffsr_plan.search.ants.open_edges import close_refused, find_open_edges
 from tests.helpers.brute_force import optimum
-from tests.helpers.builders import random_scene
+from tests.helpers.urdf_builders import random_scene
 
 seeds = st.integers(0, 100_000)
 

@@ -16,8 +16,8 @@ from ffsr_plan.search.postures.cost_kernels import (
     path_cost,
 )
 from ffsr_plan.search.postures.path_proof import prove_path
-from ffsr_plan.search.postures.posture_grid import posture_grid, without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
+from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid, without_edge
 from tests.helpers.spatial_robot import spatial_problem
 
 WEIGHT = 100.0

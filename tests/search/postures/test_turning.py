@@ -16,7 +16,7 @@ from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import ATTITUDE_TOLERANCE
 from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
 from tests.helpers.spatial_robot import curvatures, spatial_problem
-from tests.helpers.turning_programme import turning_oracle
+from tests.helpers.turning_dynamic_programme import turning_oracle
 
 REST = {"left_2": 0.8, "right_2": -0.8}
 SWING = fp.PostureAxis({"left_1": 1, "right_1": -1}, 8, 0.25)

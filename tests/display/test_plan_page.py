@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from ffsr_plan.display import figures
-from ffsr_plan.display.page import page
-from ffsr_plan.display.plan_tracks import motion_frames, near_track
+from ffsr_plan.display.picture_data import motion_frames, near_track
+from ffsr_plan.display.plan_page import page
 from tests.helpers import chromium
-from tests.helpers.pictures import colours_and_edges
+from tests.helpers.picture_measures import colours_and_edges
 
 CHROMIUM = chromium.PROGRAM
 in_a_browser = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")

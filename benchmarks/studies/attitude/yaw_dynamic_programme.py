@@ -1,9 +1,10 @@
 """A dynamic programme over base offsets, postures and yaw, for planar robots.
 
 States are (layer, base offset, posture, yaw bin). Steps and nodes have the costs of the colony, by
-the same functions; a collision is forbidden here. As in `tests/helpers/turning_programme.py`, each
-state keeps the true yaw of its cheapest path, so that rounding does not add up over the layers, and
-its clearance is computed at that yaw: one distance query for each state that is reached.
+the same functions; a collision is forbidden here. As in
+`tests/helpers/turning_dynamic_programme.py`, each state keeps the true yaw of its cheapest path, so
+that rounding does not add up over the layers, and its clearance is computed at that yaw: one
+distance query for each state that is reached.
 
 The value is the cost of the path that is returned. It is no less than the optimum of the lattice
 and may exceed it: of two paths into one bin only the cheaper one is kept, although the other,
@@ -22,6 +23,7 @@ from numba import njit
 
 from ffsr_plan.robots.shape_arrays import ROUND
 from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
+from ffsr_plan.search.postures.ant_tour_kernels import cost_to_go
 from ffsr_plan.search.postures.cost_kernels import (
     FREE_ATTITUDE_ERROR,
     angle_to,
@@ -34,8 +36,7 @@ from ffsr_plan.search.postures.cost_kernels import (
     node_cost,
 )
 from ffsr_plan.search.postures.lower_bound import origin_is_inside
-from ffsr_plan.search.postures.posture_grid import posture_grid
-from ffsr_plan.search.postures.walk_kernels import cost_to_go
+from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
 
 REACHABLE = math.radians(20.0)
 ATTITUDE_WEIGHT = AnnealingSettings().attitude_weights[1]  # [m] of cost a radian

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.robots.robot import SpaceRobot

@@ -12,9 +12,9 @@ from pydantic import TypeAdapter
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import FARTHEST, one_of
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.rules import NamedNumbers, Numbers, OneOf, Text, WholeNumber
+from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, OneOf, Text, WholeNumber
 from ffsr_plan.core.settings import part_of, setting, settings
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import ModeName, Problem

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from ffsr_plan.cli import app
 from ffsr_plan.core.bundled_files import folder
-from ffsr_plan.scenario_files.scenario_tables import ScenarioFile
+from ffsr_plan.scenario_files.scenario_schema import ScenarioFile
 from tests.scenario_files.test_obstacle_sources import ARM, TABLES
 from tests.scenario_files.test_scenario import CLOUDS, GOOD
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.problem.objective import path_length
-from tests.helpers.builders import random_configuration, random_robot, random_scene
+from tests.helpers.urdf_builders import random_configuration, random_robot, random_scene
 
 
 @pytest.fixture(scope="module")

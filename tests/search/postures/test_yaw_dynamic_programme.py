@@ -7,15 +7,19 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from benchmarks.studies.attitude.yaw_programme import cheapest_way, coarse_to_fine, least_to_go
+from benchmarks.studies.attitude.yaw_dynamic_programme import (
+    cheapest_way,
+    coarse_to_fine,
+    least_to_go,
+)
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.problem.objective import nearness
 from ffsr_plan.search.postures.annealing_kernels import uncosted_path
 from ffsr_plan.search.postures.colony import PostureColony
 from ffsr_plan.search.postures.cost_kernels import path_cost
-from ffsr_plan.search.postures.posture_grid import posture_grid, without_edge
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
+from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid, without_edge
 from ffsr_plan.search.records import SearchMonitor
 from tests.helpers.closed_forms import clearances
 

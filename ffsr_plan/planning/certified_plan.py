@@ -144,7 +144,7 @@ class Plan(PlanData):
 
     def write_html(self, path: str | Path, title: str = "") -> None:
         """Write one self-contained page that shows the motion; it needs no network."""
-        from ffsr_plan.display.page import page
+        from ffsr_plan.display.plan_page import page
 
         text = page(self, title)
         try:
@@ -195,7 +195,7 @@ class Plan(PlanData):
             InvalidInput: a port that cannot be had, such as one in use.
         """
         from ffsr_plan.display.browser import serve
-        from ffsr_plan.display.page import page
+        from ffsr_plan.display.plan_page import page
 
         return serve(page(self, title), port, block, open_browser)
 

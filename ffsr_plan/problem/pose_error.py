@@ -24,7 +24,7 @@ import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.rotations import inverse, log, matrix, multiply
-from ffsr_plan.dynamics.mode import Mode
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.momentum import connection, generalized_jacobian
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.reaction import Reaction

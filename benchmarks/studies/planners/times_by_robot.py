@@ -1,6 +1,6 @@
 """Times of clearances, optimum and colony for every robot, as ratios to Pinocchio's.
 
-    python -m benchmarks.studies.proofs.robots
+    python -m benchmarks.studies.planners.times_by_robot
 
 Robots travel 10 m through random spheres with their arms moving, on lattices of 41 layers with a
 lateral axis of 41 offsets and with lateral and normal axes of 13 by 13. C is the time of plain
@@ -150,7 +150,7 @@ def main() -> None:
         "default colony", "its largest gap", "queries per edge proven", "verified",
     ]  # fmt: skip
     publish(
-        f"# Robots\n\n`python -m benchmarks.studies.proofs.robots --scenes {args.scenes} "
+        f"# Robots\n\n`python -m benchmarks.studies.planners.times_by_robot --scenes {args.scenes} "
         f"--repeats {args.repeats} --samples {args.samples}`\n\nRandom scenes of 4 to 11 spheres, "
         "delta 0.1; the arms move "
         "on the way. Times are medians, whole plans without refinement, certified; C is the time "

@@ -1,6 +1,6 @@
 """Comparison of the colony with a dynamic programme over attitude bins, on planar gates.
 
-    python -m benchmarks.studies.attitude.attitude_programme
+    python -m benchmarks.studies.attitude.colony_versus_dynamic_programme
 
 In the plane an attitude is one angle, so a dynamic programme over (layer, node, yaw bin) is an
 alternative to the colony (`yaw_programme.py` explains in what sense it is exact). The cost of both
@@ -23,11 +23,16 @@ import numpy as np
 import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, publish, table
 from benchmarks.studies.attitude.gates import variation
-from benchmarks.studies.attitude.yaw_programme import REACHABLE, Way, cheapest_way, coarse_to_fine
+from benchmarks.studies.attitude.yaw_dynamic_programme import (
+    REACHABLE,
+    Way,
+    cheapest_way,
+    coarse_to_fine,
+)
 from ffsr_plan.search.postures.colony import PostureColony
 from ffsr_plan.search.postures.path_proof import corners, prove_path
-from ffsr_plan.search.postures.posture_grid import posture_grid
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
+from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
 from ffsr_plan.search.records import SearchMonitor
 from tests.helpers.spatial_robot import spatial_problem
 
@@ -277,7 +282,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     every = [of for parts in results.values() for of in parts]
     parts = [
         "# A dynamic programme over attitude bins",
-        "`python -m benchmarks.studies.attitude.attitude_programme "
+        "`python -m benchmarks.studies.attitude.colony_versus_dynamic_programme "
         f"--variations {args.variations} --seeds {args.seeds}`",
         INTRODUCTION,
         *(section(name, of) for name, of in results.items()),

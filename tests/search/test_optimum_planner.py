@@ -10,7 +10,7 @@ from ffsr_plan.lattice.edge_states import FREE, REFUSED
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
 from tests.helpers.brute_force import first_layer_out_of_reach, optimum
-from tests.helpers.builders import random_scene
+from tests.helpers.urdf_builders import random_scene
 
 seeds = st.integers(0, 100_000)
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.robots.loading import robot_from_urdf
-from tests.helpers.builders import cylinder, inertial, link, urdf
 from tests.helpers.grazing_obstacles import SURELY_FREE, look_at
+from tests.helpers.urdf_builders import cylinder, inertial, link, urdf
 
 BESIDE_THE_ARMS = fp.Scene([[0.1, 1.2, 0.0], [1.0, -1.5, 0.0]], [0.1, 0.1])
 

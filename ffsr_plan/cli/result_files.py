@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ffsr_plan.core.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from ffsr_plan.planning.plan import Plan
+    from ffsr_plan.planning.certified_plan import Plan
 
 RESULTS = ("plan.json", "plan.html", "path.png", "clearance.png", "convergence.png")
 """Files in the directory of `--out`."""

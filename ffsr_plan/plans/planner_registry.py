@@ -8,7 +8,7 @@ from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
-from ffsr_plan.search.lattice_optimum import LatticeOptimum
+from ffsr_plan.search.optimum_planner import LatticeOptimum
 from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
 
 Planner = AntSystem | MaxMinAntSystem | LatticeOptimum | PostureAnnealing

@@ -10,7 +10,7 @@ from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.display.meshcat_objects import CommandLog, MeshcatNode
-from ffsr_plan.display.plan_tracks import MotionFrames, drawn_solid, motion_frames, trail_segments
+from ffsr_plan.display.picture_data import MotionFrames, drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.projection import view_axes
 from ffsr_plan.display.scene_objects import (
     TIPS,

@@ -1,6 +1,6 @@
 """Distance queries of a proof, by the travel bound that it uses.
 
-    python -m benchmarks.studies.proofs.certification
+    python -m benchmarks.studies.proofs.proof_queries
 
 The same edges are certified with a simple bound on travel (every joint at its largest rate, in the
 worst direction), with the sharp bound for all links together, and link by link. Verdicts differ
@@ -18,8 +18,8 @@ import ffsr_plan as fp
 from benchmarks.random_scenes import FIRST_SEED, LATTICE, RESULTS, publish, random_problem, table
 from benchmarks.studies.proofs.travel_bound import simple_speeds
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.proof.edges import ObstacleEdge
 from ffsr_plan.proof.interval_halving import Verdict, certify
+from ffsr_plan.proof.motion_edges import ObstacleEdge
 from ffsr_plan.proof.prover import Prover
 
 TOLERANCE = 1e-4
@@ -146,7 +146,7 @@ def main() -> None:
         "for a refused one",
     ]  # fmt: skip
     publish(
-        "# Queries of a proof\n\n`python -m benchmarks.studies.proofs.certification "
+        "# Queries of a proof\n\n`python -m benchmarks.studies.proofs.proof_queries "
         f"--edges {args.edges} --scenes {args.scenes}`\n\nEdges of lattices between neighbouring "
         "offsets, and arms that "
         "swing by half a radian a joint while the\nbase reacts; both ends free. A query is Coal's "
