@@ -1,4 +1,4 @@
-"""Immutable settings: dataclasses whose fields pydantic checks by the rules of `core.checks`.
+"""Immutable settings: dataclasses whose fields pydantic checks by rules (`core.setting_rules`).
 
     @settings
     class Axis:
