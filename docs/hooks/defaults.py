@@ -23,7 +23,7 @@ def on_page_markdown(text: str, page: Any, **_: Any) -> str:
 
 def _with_signature(directive: re.Match[str]) -> str:
     module, _, name = directive["name"].rpartition(".")
-    thing = getattr(importlib.import_module(module), name, None)
+    thing: Any = getattr(importlib.import_module(module), name, None)
     if not hasattr(thing, "__pydantic_config__"):  # set by `core.settings.settings`
         return directive[0]
     fields = [field for field in dataclasses.fields(thing) if field.init]
