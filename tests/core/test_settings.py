@@ -161,7 +161,7 @@ def test_settings_import_pydantic_when_the_first_object_is_made():
 
 def test_an_unknown_key_of_a_nested_setting_names_its_table():
     problem = fp.load_scenario("fig2a")
-    with pytest.raises(fp.InvalidInput, match="did you mean 'lattice.divisions'"):
+    with pytest.raises(fp.InvalidInput, match=r"did you mean 'lattice\.divisions'"):
         dataclasses.replace(problem, lattice={"divisons": 10})
     with pytest.raises(fp.InvalidInput, match=r"lattice\.latral.*did you mean 'lattice.lateral'"):
         dataclasses.replace(problem, lattice={"latral": {"half_count": 1, "spacing": 1.0}})
