@@ -10,7 +10,6 @@ Writes `turn.gif`: the close-up below the scene shows the angle.
 import numpy as np
 
 import ffsr_plan as fp
-from ffsr_plan.display import write_gif
 
 REST = {"left_2": 0.8, "right_2": -0.8}
 SHOULDERS = {"left_1": 1.0, "right_1": -1.0}
@@ -37,7 +36,7 @@ def main() -> None:
     plan = fp.plan(problem, seed=0)
     print(f"base rotated by {np.degrees(plan.arrival_attitude[0]):.4f} degrees")
     print(f"length of the joint path {plan.length:.2f} m")
-    write_gif(plan, "turn.gif", frames=80, width=480)
+    plan.write_gif("turn.gif", frames=80, width=480)
 
 
 if __name__ == "__main__":

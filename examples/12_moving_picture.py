@@ -7,14 +7,13 @@ Writes `debris.gif`: through two thousand pieces of debris.
 """
 
 import ffsr_plan as fp
-from ffsr_plan.display import write_gif
 
 
 def main() -> None:
     """Plan through debris and write the moving picture."""
     plan = fp.plan(fp.load_scenario("debris"), seed=0)
     print(f"{len(plan.problem.scene)} obstacles, length {plan.length:.2f} m")
-    write_gif(plan, "debris.gif", frames=60, width=720)
+    plan.write_gif("debris.gif", frames=60, width=720)
 
 
 if __name__ == "__main__":

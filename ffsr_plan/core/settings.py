@@ -1,4 +1,4 @@
-"""Immutable settings: dataclasses whose fields pydantic checks by the rules of `core.checks`.
+"""Immutable settings: dataclasses whose fields pydantic checks by rules (`core.setting_rules`).
 
     @settings
     class Axis:
@@ -16,13 +16,17 @@ from __future__ import annotations
 import difflib
 import functools
 import re
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
-from typing_extensions import dataclass_transform
-
 from ffsr_plan.core.errors import InvalidInput
+
+if sys.version_info >= (3, 11):
+    from typing import dataclass_transform
+else:
+    from typing_extensions import dataclass_transform
 
 if TYPE_CHECKING:
     from pydantic import TypeAdapter, ValidationError
@@ -231,7 +235,9 @@ def _in_our_words(cls: type, error: ValidationError, of: str) -> InvalidInput:
     )
     path, kind, inner = ".".join(place), first["type"], context.get("error")
     if kind == "unexpected_keyword_argument":
-        return UnknownKey(path, [each.name for each in fields(cls)], of=of)
+        *tables, key = place
+        path = "".join(f"{table}." for table in tables)
+        return UnknownKey(key, [each.name for each in fields(_nested(cls, tables))], path, of)
     if isinstance(inner, UnknownKey):
         return inner.within(path)
     if isinstance(inner, InvalidInput):
@@ -246,6 +252,18 @@ def _in_our_words(cls: type, error: ValidationError, of: str) -> InvalidInput:
     if of:
         path = re.sub(r"^[\w.]+", lambda found: f"{found[0]} of {of}", path, count=1)
     return InvalidInput(path, value, allowed)
+
+
+def _nested(cls: type, path: Sequence[str]) -> type:
+    """The settings class of a field of a field ... of `cls`."""
+    from typing import get_args, get_type_hints
+
+    for name in path:
+        parts = [get_type_hints(cls)[name]]
+        while parts and not hasattr(parts[0], "__pydantic_config__"):
+            parts = [*get_args(parts[0]), *parts[1:]]
+        cls = parts[0] if parts else cls
+    return cls
 
 
 def _call(cls: type) -> str:

@@ -44,8 +44,8 @@ class Plan(PlanData):
         """The plan flown as fast as limits allow, from rest to rest, on exactly the proven path.
 
         It rests at every corner of the path, where a velocity would have to change at once.
-        What is not named is not limited, but for `joint_velocity`, which is the URDF's. Limits for
-        joints are one number for all of them, or numbers by joint name.
+        A quantity without a value is not limited; `joint_velocity` defaults to the URDF's. Limits
+        for joints are one number for all of them, or numbers by joint name.
 
         Args:
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
@@ -208,11 +208,19 @@ class Plan(PlanData):
 
     def __repr__(self) -> str:
         problem = self.problem
-        return (
-            f"Plan({problem.robot.name}, {problem.mode}, {self.planner.name}, "
-            f"L {self.length:.4g} m, F {self.objective:.6g}, gap {self.gap:.2%}, "
-            f"proven clearance {proven(self.certificate.least_clearance)})"
-        )
+        gap = f"gap {self.gap:.2%}" if self.optimum_is_exact else f"{self.gap:.2%} above a bound"
+        clearance = f"proven clearance {proven(self.certificate.least_clearance)}"
+        parts = [
+            problem.robot.name,
+            str(problem.mode),
+            self.planner.name,
+            f"L {self.length:.4g} m",
+            f"F {self.objective:.6g}",
+            gap,
+            clearance if len(problem.scene) else "no obstacles",
+            *(["interrupted"] if self.interrupted else []),
+        ]
+        return f"Plan({', '.join(parts)})"
 
     def _repr_html_(self) -> str:
         return html_table("Plan", dict(plan_rows(self)))

@@ -45,8 +45,8 @@ def plan(
             default on every lattice without posture axes; with them paths are not refined.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
-        time_limit: [s] for the search, from its beginning; setting up the lattice before it, and
-            the optimum and the refinement after it, are not cut short.
+        time_limit: [s] for the search, from its beginning. The set-up of the lattice before it, the
+            optimum and the refinement after it, and a single annealing are not cut short.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.
 
     Raises:

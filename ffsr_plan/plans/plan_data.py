@@ -69,7 +69,7 @@ class PlanData:
 
     @property
     def gap(self) -> float:
-        """(lattice_objective - optimum) / optimum: how far the search stayed above the optimum."""
+        """(lattice_objective - optimum) / optimum; `optimum` is a bound with posture axes."""
         above = self.lattice_objective - self.optimum
         if above <= 0.0:
             return 0.0

@@ -16,6 +16,7 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternion
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
+from ffsr_plan.core.read_only_dict import ReadOnlyDict
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
 from ffsr_plan.core.text_files import write_text
 from ffsr_plan.robots.collision_shapes import (
@@ -104,7 +105,14 @@ class SpaceRobot:
             "lower": frozen(np.array(lower, dtype=np.float64)),
             "upper": frozen(np.array(upper, dtype=np.float64)),
             "prismatic": frozen(np.array(prismatic, dtype=np.bool_)),
-            "postures": named_postures(self.srdf, f"{self.name}, SRDF", limits),
+            "postures": ReadOnlyDict(
+                {
+                    name: ReadOnlyDict(values)
+                    for name, values in named_postures(
+                        self.srdf, f"{self.name}, SRDF", limits
+                    ).items()
+                }
+            ),
             "_slots": slots,
         }
         for attribute, value in derived.items():

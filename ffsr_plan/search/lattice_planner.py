@@ -48,13 +48,10 @@ class LatticePlanner:
         """Raise `InvalidInput` if the planner cannot solve the problem, naming one that can."""
         if not problem.lattice.postures:
             return
-        reason = "it searches one configuration a node, and posture axes give each node several"
+        reason = "this planner searches one configuration a node"
         if problem.mode.attitude_reacts:
-            reason = (
-                "with posture axes the attitude at a node depends on the path that leads to it, "
-                "so that no search over nodes alone is exact"
-            )
-        allowed = f"posture-annealing on a lattice with posture axes: {reason}"
+            reason = "the attitude at a node depends on the path that leads to it"
+        allowed = f"posture-annealing on a lattice with posture axes, where {reason}"
         raise InvalidInput("planner", self.name, allowed)
 
     def solve(self, problem: Problem, rng: np.random.Generator, request: SearchRequest) -> Solution:

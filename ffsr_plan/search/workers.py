@@ -11,7 +11,7 @@ import signal
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, wait
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from ffsr_plan.search.records import SearchMonitor
 
 Job = TypeVar("Job")
 Outcome = TypeVar("Outcome")
-Run = Callable[[Job, list[np.random.Generator], SearchMonitor], list[Outcome]]
+if TYPE_CHECKING:  # numpy loads its generators when they are first named
+    Run = Callable[[Job, list[np.random.Generator], SearchMonitor], list[Outcome]]
 
 _POLL = 0.2  # [s] between checks for Ctrl-C
 _stop_event: Any = None  # in a worker: set by the caller when Ctrl-C was pressed

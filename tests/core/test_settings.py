@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
+import ffsr_plan as fp
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import (
     ByKey,
@@ -156,3 +157,11 @@ def test_settings_import_pydantic_when_the_first_object_is_made():
         "fp.Axis(1, 0.1); assert 'pydantic' in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_an_unknown_key_of_a_nested_setting_names_its_table():
+    problem = fp.load_scenario("fig2a")
+    with pytest.raises(fp.InvalidInput, match=r"did you mean 'lattice\.divisions'"):
+        dataclasses.replace(problem, lattice={"divisons": 10})
+    with pytest.raises(fp.InvalidInput, match=r"lattice\.latral.*did you mean 'lattice.lateral'"):
+        dataclasses.replace(problem, lattice={"latral": {"half_count": 1, "spacing": 1.0}})

@@ -127,3 +127,15 @@ def test_robots_load_by_name_and_by_path(robot):
 
 def test_every_bundled_urdf_is_listed():
     assert {p.stem for p in Path(folder("urdf")).glob("*.urdf")} == set(fp.robot_names())
+
+
+def test_postures_of_a_robot_cannot_be_changed():
+    robot = fp.load_robot("satellite_ur5")
+    name = next(iter(robot.postures))
+    joint = next(iter(robot.postures[name]))
+    with pytest.raises(TypeError, match="read-only"):
+        robot.postures[name][joint] = 0.5
+    with pytest.raises(TypeError, match="read-only"):
+        robot.postures.update(other={})
+    assert pickle.loads(pickle.dumps(robot.postures)) == robot.postures
+    assert robot.postures | {} == dict(robot.postures)

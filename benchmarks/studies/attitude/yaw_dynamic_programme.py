@@ -171,7 +171,8 @@ def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
                             grid.centers[i + 1, p], quat, workspace,
                         )  # fmt: skip
                     if clearance > 0.0:
-                        new_cost[p, k, b] = arrival + node_cost(grid, clearance, i + 1 < m)
+                        own = node_cost(grid.clearance_cost, clearance, i + 1 < m)
+                        new_cost[p, k, b] = arrival + own
         cost, new_cost = new_cost, cost
         yaw, new_yaw = new_yaw, yaw
     best, end = np.inf, -1

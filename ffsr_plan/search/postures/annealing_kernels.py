@@ -15,6 +15,7 @@ from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.compilation import kernel
 from ffsr_plan.search.postures.cost_kernels import (
     COLLISION_COST,
+    ClearanceCost,
     CostedPath,
     PostureGrid,
     Workspace,
@@ -44,9 +45,9 @@ def uncosted_path(path: IntArray) -> CostedPath:
 
 
 @kernel
-def least_cost(grid: PostureGrid, clearance: float, change: float, inner: bool) -> float:
+def least_cost(constants: ClearanceCost, clearance: float, change: float, inner: bool) -> float:
     """The least that a node may cost [m] whose clearance changes by `change` at most."""
-    cost = node_cost(grid, clearance + change, inner)
+    cost = node_cost(constants, clearance + change, inner)
     return cost if clearance + change <= 0.0 else min(COLLISION_COST, cost)
 
 
@@ -88,7 +89,7 @@ def trial_cost(
             compose(change, old[i], new[i])
     else:
         new[last:] = old[last:]
-    total = attitude_cost(grid, new[m], weight)
+    total = attitude_cost(grid.reach_attitude, new[m], grid.goal, weight)
     for i in range(m):
         total += trial.lengths[i] if first - 1 <= i < last else current.lengths[i]
     for i in range(1, first):
@@ -96,7 +97,7 @@ def trial_cost(
     trial.least[first:last] = 0.0
     for i in range(last, m + 1):
         displacement = spin * grid.radii[i, current.nodes[i, 1]]
-        trial.least[i] = least_cost(grid, current.clearances[i], displacement, i < m)
+        trial.least[i] = least_cost(grid.clearance_cost, current.clearances[i], displacement, i < m)
         total += trial.least[i]
     if total > limit:
         return np.inf

@@ -27,7 +27,7 @@ class AnnealingSettings:
         annealing_shifts: segment shifts for each layer in each annealing; by default 3000 where the
             arms have to bring about a goal attitude, and 1000 otherwise.
         temperatures: pairs of temperatures [m], begin and end of each annealing after the ants.
-            How often the arms loop is settled by the first, hot one; the cooler ones improve the
+            The first, hottest annealing decides how often the arms loop; the others improve the
             path that it leaves.
         attitude_weights: cost [m] of a radian of goal attitude error, at the beginning of an
             annealing and from half of its shifts on; the latter judges paths.

@@ -62,7 +62,7 @@ def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
                         clearance = clearance_at(
                             grid.obstacles, frames, grid.places[i, b], center, nominal[i], workspace
                         )
-                        own[b, p] = node_cost(grid, clearance, i < m)
+                        own[b, p] = node_cost(grid.clearance_cost, clearance, i < m)
     return ahead
 
 

@@ -33,6 +33,18 @@ class Obstacles(NamedTuple):
     """(g,) of `Primitives`."""
 
 
+class ClearanceCost(NamedTuple):
+    """Constants of the cost of a node.
+
+    Attributes:
+        weight: delta times the unit of length squared [m^2].
+        cap: clearance beyond which the cost does not fall [m], infinite where there is none.
+    """
+
+    weight: float
+    cap: float
+
+
 class PostureGrid(NamedTuple):
     """Lattice data for the compiled search: b base offsets, n postures, k steps, g shapes."""
 
@@ -65,10 +77,7 @@ class PostureGrid(NamedTuple):
     """(4,) attitude."""
     goal: Array
     """(4,) attitude; counts where it is to be reached."""
-    clearance_weight: float
-    """delta times the unit of length squared [m^2]."""
-    clearance_cap: float
-    """[m], infinite where there is none."""
+    clearance_cost: ClearanceCost
     delta_d: float
     """[m]."""
     reach_attitude: bool
@@ -175,13 +184,13 @@ def clearance_at(
 
 
 @kernel
-def node_cost(grid: PostureGrid, clearance: float, inner: bool) -> float:
+def node_cost(constants: ClearanceCost, clearance: float, inner: bool) -> float:
     """Cost [m] of a node: delta / d, or that of a collision."""
     if clearance <= 0.0:
         return COLLISION_COST - DEPTH_COST * clearance
     if not inner:
         return 0.0
-    return grid.clearance_weight / min(clearance, grid.clearance_cap)
+    return constants.weight / min(clearance, constants.cap)
 
 
 @kernel
@@ -220,11 +229,11 @@ def is_refused(refused: IntArray, layer: int, b: int, p: int, b_on: int, p_on: i
 
 
 @kernel
-def attitude_cost(grid: PostureGrid, quat: Array, weight: float) -> float:
+def attitude_cost(reach_attitude: bool, quat: Array, goal: Array, weight: float) -> float:
     """Cost [m] of the attitude at the goal, a radian of error costing `weight` [m]."""
-    if not grid.reach_attitude:
+    if not reach_attitude:
         return 0.0
-    return weight * max(0.0, angle_to(quat, grid.goal) - FREE_ATTITUDE_ERROR)
+    return weight * max(0.0, angle_to(quat, goal) - FREE_ATTITUDE_ERROR)
 
 
 @kernel
@@ -288,7 +297,7 @@ def visit(
                 obstacles, frames[i, p], places[i, b], centers[i, p], quats[i], workspace
             )
         path.clearances[i] = clearance
-        path.costs[i] = node_cost(grid, clearance, i + 1 < len(nodes))
+        path.costs[i] = node_cost(grid.clearance_cost, clearance, i + 1 < len(nodes))
         total += path.costs[i] - path.least[i]
         if total > limit:
             return np.inf
@@ -309,5 +318,6 @@ def path_cost(grid: PostureGrid, path: CostedPath, weight: float) -> float:
     path.least[:] = 0.0
     if not take_edges(grid, path, 0, m):
         return np.inf
-    total = np.sum(path.lengths) + attitude_cost(grid, path.quats[m], weight)
+    error_cost = attitude_cost(grid.reach_attitude, path.quats[m], grid.goal, weight)
+    total = np.sum(path.lengths) + error_cost
     return visit(grid, path, 1, m + 1, total, np.inf, workspace)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.rotations import rotate
-from ffsr_plan.search.postures.cost_kernels import Obstacles, PostureGrid
+from ffsr_plan.search.postures.cost_kernels import ClearanceCost, Obstacles, PostureGrid
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 
 
@@ -40,8 +40,10 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
         origin=np.array([base.origin, lattice.origin]),
         start=np.array(problem.start[3:7]),
         goal=np.array(problem.goal[3:7]),
-        clearance_weight=problem.delta * problem.length_unit**2,
-        clearance_cap=np.inf if cap is None else cap,
+        clearance_cost=ClearanceCost(
+            weight=problem.delta * problem.length_unit**2,
+            cap=np.inf if cap is None else cap,
+        ),
         delta_d=problem.delta_d,
         reach_attitude=problem.reach_attitude,
         radii=_radii(lattice),

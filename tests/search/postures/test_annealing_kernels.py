@@ -15,7 +15,7 @@ from ffsr_plan.search.postures.cost_kernels import (
     node_cost,
     path_cost,
 )
-from ffsr_plan.search.postures.path_proof import prove_path
+from ffsr_plan.search.postures.path_proof import corners, prove_path
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid, without_edge
 from tests.helpers.spatial_robot import spatial_problem
@@ -121,12 +121,15 @@ def test_node_costs_follow_from_coals_clearances():
     grid, path = ground_and_path("gate")
     current = uncosted_path(path)
     path_cost(grid, current, WEIGHT)
-    exact = prove_path(PostureLattice(PROBLEMS["gate"]()), path).clearances
+    lattice = PostureLattice(PROBLEMS["gate"]())
+    exact = prove_path(lattice, *corners(lattice, path)).clearances
     assert current.clearances[1:] == pytest.approx(exact[1:], abs=1e-9)
     for clearance, cost in zip(exact[1:-1], current.costs[1:-1], strict=True):
-        assert cost == pytest.approx(node_cost(grid, clearance, True))
-    assert node_cost(grid, -0.1, False) == COLLISION_COST + 0.1 * DEPTH_COST
-    assert node_cost(grid, 0.1, True) == pytest.approx(grid.clearance_weight / 0.1)
+        assert cost == pytest.approx(node_cost(grid.clearance_cost, clearance, True))
+    assert node_cost(grid.clearance_cost, -0.1, False) == COLLISION_COST + 0.1 * DEPTH_COST
+    assert node_cost(grid.clearance_cost, 0.1, True) == pytest.approx(
+        grid.clearance_cost.weight / 0.1
+    )
 
 
 def test_the_searchs_cost_is_the_objective_of_its_plan():
