@@ -168,7 +168,7 @@ def test_stopping_ends_all_threads_and_frees_the_port():
     before, own = set(threading.enumerate()), children()
     server = PageServer("")
     port = port_of(server.url)
-    with socket.create_connection(("127.0.0.1", port)) as idle:
+    with socket.create_connection(("127.0.0.1", port), timeout=10) as idle:
         listener = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
         listener.request("GET", "/events")
         answer = listener.getresponse()
