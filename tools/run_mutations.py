@@ -14,6 +14,7 @@ import os
 import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -33,7 +34,7 @@ else:
 ROOT = Path(__file__).resolve().parent.parent
 MUTATIONS = ROOT / "tests" / "mutations.toml"
 LEFT_OUT = (".*", "__pycache__", "*.egg-info", "site", "build", "dist", "ffsr-demo*")
-TIME_LIMIT = 600.0  # [s] of one test; a mutation that makes it run longer counts as killed
+TIME_LIMIT = 300.0  # [s] of one test; a mutation that makes it run longer counts as killed
 PASSED, FAILED = 0, 1  # exit statuses of pytest
 KERNEL = re.compile(r"^@(njit|kernel|inlined_kernel)\b", re.MULTILINE)
 REASON = re.compile(r"^(?:FAILED|ERROR|SKIPPED) .*? - (.*)$", re.MULTILINE)
@@ -96,15 +97,16 @@ def run_pytest(
         "-p", "no:cacheprovider", "--hypothesis-profile=mutations", *tests,
     ]  # fmt: skip
     settings = {"PYTHONPATH": str(root), "MPLBACKEND": "Agg", "COLUMNS": "250"}
-    out, err = subprocess.PIPE, subprocess.STDOUT
-    try:
-        done = subprocess.run(
-            command, cwd=root, env=os.environ | settings, stdout=out, stderr=err, text=True,
-            timeout=time_limit, check=False,
-        )  # fmt: skip
-    except subprocess.TimeoutExpired:
-        return None, ""
-    return done.returncode, done.stdout
+    with subprocess.Popen(
+        command, cwd=root, env=os.environ | settings, text=True, start_new_session=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    ) as process:  # fmt: skip
+        try:
+            output, _ = process.communicate(timeout=time_limit)
+            return process.returncode, output
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)  # with all processes that the test has started
+            return None, ""
 
 
 def forget_kernels(root: Path, file: str) -> None:

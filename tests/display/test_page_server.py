@@ -254,7 +254,10 @@ def test_a_script_ends_although_its_page_is_shown(plan_file):
     )
     process, url = started("-c", script)
     with process:
-        assert process.wait(timeout=60) == 0
+        try:
+            assert process.wait(timeout=20) == 0
+        finally:
+            process.kill()
     assert not listens(port_of(url))
 
 
