@@ -83,7 +83,7 @@ def wheel_momentum(
     edge = np.minimum((s * motion.edges).astype(np.int64), motion.edges - 1)
     time = s * motion.edges - edge
     edge_rate = rate * motion.edges / duration
-    stored = -edge_rate[:, None] * _momentum_along(motion, edge, time)
+    stored = -edge_rate[:, None] * momentum_along(motion, edge, time)
     pose = rotations.matrix(motion.at(edge, time)[:, 3:7])
     return WheelMomentum(instants, s, stored, turned(pose, stored))
 
@@ -101,7 +101,7 @@ def rest_to_rest(u: Array) -> tuple[Array, Array]:
     return s, 30.0 * (u * (1.0 - u)) ** 2
 
 
-def _momentum_along(motion: Motion, edge: IntArray, time: Array) -> Array:
+def momentum_along(motion: Motion, edge: IntArray, time: Array) -> Array:
     """(N, 3) momentum of base and arms about the centre of mass, base axes [kg m^2 rad / edge]."""
     steps = np.diff(motion.joint_values, axis=0)[edge]
     maps = angular_maps(motion.robot, motion.joint_values[edge] + time[:, None] * steps)

@@ -74,7 +74,7 @@ def load_arm(
         InvalidInput: no such arm or file, a URDF or SRDF that cannot be used, an unknown joint, a
             value outside the joint's limits, or a joint that mimics one that is not locked.
     """
-    path, own, folders = _find(source)
+    path, own, folders = find_arm(source)
     text = read_text("arm", path)
     where = f"arm {source}"
     robot = parse(text, where)
@@ -90,8 +90,18 @@ def load_arm(
     return Arm(robot, root, folders, where, pairs)
 
 
-def _find(source: str | Path) -> tuple[Path, Path | None, tuple[str, ...]]:
-    """Paths of the URDF and, if there is one, of the SRDF, and the folders of the meshes."""
+def find_arm(source: str | Path) -> tuple[Path, Path | None, tuple[str, ...]]:
+    """Files of an arm.
+
+    Args:
+        source: name of an arm of example-robot-data, or path to a `.urdf` file.
+
+    Returns:
+        Paths of the URDF and, if there is one, of the SRDF, and the folders of the meshes.
+
+    Raises:
+        InvalidInput: no such arm or file.
+    """
     path = Path(source)
     if path.suffix == ".urdf":
         if not path.is_file():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult,
 from ffsr_plan.search.workers import run_on_workers
 
 
-class LatticePlanner:
+class LatticePlanner(ABC):
     """Base class of the planners that search a roadmap.
 
     Attributes:
@@ -28,6 +29,7 @@ class LatticePlanner:
     name: ClassVar[str]
     exact: ClassVar[bool] = False
 
+    @abstractmethod
     def search(
         self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None
     ) -> SearchResult:
@@ -42,7 +44,6 @@ class LatticePlanner:
             NoPath: there is none, with the layer that cannot be passed.
             PlanningError: none was found.
         """
-        raise NotImplementedError
 
     def refuse(self, problem: Problem) -> None:
         """Raise `InvalidInput` if the planner cannot solve the problem, naming one that can."""

@@ -176,8 +176,8 @@ def test_plans_say_what_the_wheels_store_and_verification_agrees(held_plan):
 
 @pytest.mark.parametrize("change", [lambda v: -v, lambda v: v * (1 + 1e-8)])
 def test_verification_notices_a_wrong_wheel_momentum(held_plan, monkeypatch, change):
-    right = wheels._momentum_along
-    monkeypatch.setattr(wheels, "_momentum_along", lambda *given: change(right(*given)))
+    right = wheels.momentum_along
+    monkeypatch.setattr(wheels, "momentum_along", lambda *given: change(right(*given)))
     report = held_plan.verify(5)
     assert "the wheels must store another momentum" in " ".join(report.problems)
 

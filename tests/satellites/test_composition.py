@@ -84,7 +84,7 @@ def own_poses(mount, values):
 
     `values` are those of the composed robot; locked and mimicking joints are where they were put.
     """
-    path, _, _ = arms._find(mount.arm)
+    path, _, _ = arms.find_arm(mount.arm)
     model = pin.buildModelFromUrdf(str(path))
     data, q = model.createData(), pin.neutral(model)
     fingers = dict.fromkeys(("panda_finger_joint2",), FINGERS["panda_finger_joint1"])
@@ -112,7 +112,7 @@ def expected(mounts, values):
     }
     for mount in mounts:
         poses |= own_poses(mount, values)
-        root = ElementTree.parse(arms._find(mount.arm)[0]).getroot()
+        root = ElementTree.parse(arms.find_arm(mount.arm)[0]).getroot()
         for part in root.findall("link"):
             masses[mount.prefix + part.get("name")] = own_inertia(part.find("inertial"))
     assert set(poses) == set(masses)

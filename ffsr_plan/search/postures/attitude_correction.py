@@ -47,7 +47,7 @@ def corrected(
         missed = rotations.log(rotations.multiply(rotations.inverse(reached), goal))
         if np.linalg.norm(missed) < _TOLERANCE:
             return path
-        slope = _slopes(robot, path, directions, reaction.increments)
+        slope = attitude_slopes(robot, path, directions, reaction.increments)
         inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, missed, free)
         if inner is None:
             return None
@@ -76,7 +76,7 @@ def _within_limits(
     return None
 
 
-def _slopes(robot: SpaceRobot, path: Array, directions: Array, increments: Array) -> Array:
+def attitude_slopes(robot: SpaceRobot, path: Array, directions: Array, increments: Array) -> Array:
     """(3, (m - 1) axes) rotation at the end, in its own axes, for each unit of displacement."""
     m, axes = len(path) - 1, directions.shape[1]
     corners = np.repeat(np.arange(1, m), axes)

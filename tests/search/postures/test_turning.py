@@ -11,7 +11,7 @@ import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.loading import robot_from_urdf
-from ffsr_plan.search.postures.attitude_correction import _slopes, corrected
+from ffsr_plan.search.postures.attitude_correction import attitude_slopes, corrected
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import ATTITUDE_TOLERANCE
 from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
@@ -214,7 +214,7 @@ def test_slopes_of_the_correction_equal_finite_differences():
     plan = spatial(30, (0, 0, 1))
     robot, path, h = plan.problem.robot, plan.motion.joint_values, 1e-4
     directions = displacements(plan.problem, np.tile(path[0], (len(path), 1)))
-    slopes = _slopes(robot, path, directions, Reaction.along(robot, path).increments)
+    slopes = attitude_slopes(robot, path, directions, Reaction.along(robot, path).increments)
     axes = directions.shape[1]
     for column in range(0, slopes.shape[1], 11):
         corner, axis = 1 + column // axes, column % axes
