@@ -151,6 +151,8 @@ def _plan_with_progress(
                 )
                 progress.refresh()
 
+        exact = scenario.planner is not None and scenario.planner.exact
+        has_cycles = options.colonies == 1 and not exact
         return make_plan(
             scenario.problem,
             scenario.planner,
@@ -159,5 +161,5 @@ def _plan_with_progress(
             colonies=options.colonies,
             workers=options.workers,
             time_limit=options.time_limit,
-            on_cycle=show if options.colonies == 1 and (on_terminal or on_cycle) else None,
+            on_cycle=show if has_cycles and (on_terminal or on_cycle) else None,
         )

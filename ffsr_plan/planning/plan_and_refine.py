@@ -65,6 +65,10 @@ def plan(
     chosen.refuse(problem)
     rng, seed_number = _generator(seed)
     request = _request(refine, colonies, workers, time_limit, on_cycle)
+    if chosen.exact and request.colonies > 1:
+        raise InvalidInput("colonies", colonies, f"1 with {chosen.name}: it has one result")
+    if chosen.exact and on_cycle is not None:
+        raise InvalidInput("on_cycle", on_cycle, f"None with {chosen.name}: it has no cycles")
     solution = chosen.solve(problem, rng, request)
     return Plan(
         problem=problem,

@@ -159,3 +159,9 @@ def test_the_optimum_certifies_far_fewer_edges_than_there_are():
     lattice_optimum(roadmap)
     proofs = roadmap.counts()
     assert proofs.edges_free + proofs.edges_refused < 1000 < roadmap.status.size
+
+
+@pytest.mark.parametrize("argument", [{"colonies": 2}, {"on_cycle": print}])
+def test_the_exact_planner_refuses_colonies_and_callbacks(argument):
+    with pytest.raises(fp.InvalidInput, match=f"{next(iter(argument))}.*lattice-optimum"):
+        fp.plan(fp.load_scenario("fig2a"), fp.LatticeOptimum(), **argument)
