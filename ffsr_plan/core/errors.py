@@ -54,6 +54,10 @@ class InvalidInput(FfsrPlanError, ValueError):
         return f"{self.what}: got {_shorten(self.value)}; allowed: {self.allowed}"
 
 
+class UncheckedLinks(UserWarning):
+    """A robot has links with mass but no shape, which nothing keeps clear of obstacles."""
+
+
 class PlanningError(FfsrPlanError):
     """The input is valid, but no plan exists or none was found."""
 
