@@ -7,7 +7,7 @@ import difflib
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, is_dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from ffsr_plan.core.arrays import Array
 
@@ -169,22 +169,26 @@ class AttitudeOutOfReach(PlanningError):
     Attributes:
         wanted: angle from the start attitude to the goal attitude [rad].
         missed: angle from the attitude reached to the goal attitude [rad].
+        best: the `Plan` that misses it so, proven free all the same; None if no path could be
+            proven free.
         turned: the part of `wanted` that was reached, wanted - missed, at least 0 [rad].
     """
 
     wanted: float
     missed: float
+    best: Any = None
     turned: float = field(init=False)
 
     def __post_init__(self) -> None:
         self.turned = max(0.0, self.wanted - self.missed)
 
     def message(self) -> str:
-        """Both angles in degrees, and which settings may help."""
+        """All three angles in degrees, and which settings may help."""
         return (
             f"goal attitude out of reach: the best joint path rotates the base by "
-            f"{math.degrees(self.turned):.1f} of {math.degrees(self.wanted):.1f} degrees; more "
-            "divisions, wider or other posture axes, or another seed may increase this"
+            f"{math.degrees(self.turned):.1f} of {math.degrees(self.wanted):.1f} degrees and "
+            f"misses the goal by {math.degrees(self.missed):.2g} degrees; more divisions, wider or "
+            "more posture axes, or another seed may help"
         )
 
 

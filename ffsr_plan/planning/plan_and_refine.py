@@ -9,14 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from ffsr_plan.core.checks import number, truth, whole_number
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.errors import AttitudeOutOfReach, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.refinement import refined_path
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.plans.planner_registry import Planner, planner_of
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
-from ffsr_plan.search.records import OnCycle, SearchRequest
+from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
 
 
 def plan(
@@ -53,7 +53,8 @@ def plan(
         InvalidInput: an argument that is not allowed, or a planner that cannot solve the problem.
         StartInCollision, GoalInCollision: with link, obstacle and depth.
         NoPath: the lattice holds no free path, with the layer that cannot be passed.
-        AttitudeOutOfReach: the arms were not found to bring about the goal's attitude.
+        AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; `best` is
+            the plan that misses it least.
         UnprovenPath: with posture axes, the path found could not be proven free.
         PlanningError: no path was found in time.
         WorkerDied: a worker process ended without a result.
@@ -69,14 +70,22 @@ def plan(
         raise InvalidInput("colonies", colonies, f"1 with {chosen.name}: it has one result")
     if chosen.exact and on_cycle is not None:
         raise InvalidInput("on_cycle", on_cycle, f"None with {chosen.name}: it has no cycles")
-    solution = chosen.solve(problem, rng, request)
-    return Plan(
-        problem=problem,
-        planner=chosen,
-        seed=seed_number,
-        seconds=time.perf_counter() - begin,
-        **solution._asdict(),
-    )
+
+    def certified(solution: Solution) -> Plan:
+        return Plan(
+            problem=problem,
+            planner=chosen,
+            seed=seed_number,
+            seconds=time.perf_counter() - begin,
+            **solution._asdict(),
+        )
+
+    try:
+        return certified(chosen.solve(problem, rng, request))
+    except AttitudeOutOfReach as error:
+        if isinstance(error.best, Solution):
+            error.best = certified(error.best)
+        raise
 
 
 def refine(plan: Plan) -> Plan:

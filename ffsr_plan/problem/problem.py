@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
-from ffsr_plan.core.rotations import angle_between, to_angles
+from ffsr_plan.core.rotations import rotation_vector, to_angles
 from ffsr_plan.core.setting_rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.dynamics.actuation_mode import Mode
@@ -163,7 +163,8 @@ class Problem:
         """Angle from the start's to the goal's attitude [rad] if wheels hold it, otherwise 0."""
         if self.mode.attitude_reacts:
             return 0.0
-        return float(angle_between(self.start[3:7], self.goal[3:7]))
+        vector = rotation_vector(self.start[3:7], self.goal[3:7])
+        return float(np.linalg.norm(vector, axis=-1))
 
     @property
     def delta_d(self) -> float:

@@ -13,7 +13,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternion
+from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.read_only_dict import ReadOnlyDict
@@ -26,6 +26,8 @@ from ffsr_plan.robots.collision_shapes import (
 from ffsr_plan.robots.kinematics import Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import named_postures
+
+_HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
 
 
 class Components(NamedTuple):
@@ -280,7 +282,8 @@ class SpaceRobot:
     def joint_change(self, begin: Array, end: Array) -> Array:
         """Change of the joint values from one configuration to another.
 
-        A continuous joint takes the shorter direction; a rotation by pi is positive.
+        A continuous joint takes the shorter direction; half a turn is positive, also if rounding
+        makes it 1e-9 rad more or less.
 
         Args:
             begin: (nq,) first configuration.
@@ -291,6 +294,7 @@ class SpaceRobot:
         """
         change = self.joint_values(end) - self.joint_values(begin)
         wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
+        wrapped = np.where(wrapped < -np.pi + _HALF_TURN_BAND, wrapped + 2.0 * np.pi, wrapped)
         return np.where(np.isinf(self.upper), wrapped, change)
 
     def check_configuration(self, what: str, q: ArrayLike) -> Array:
@@ -301,7 +305,8 @@ class SpaceRobot:
             q: (nq,) configuration.
 
         Returns:
-            (nq,) read-only copy, its quaternion normalised.
+            (nq,) read-only copy; quaternion, and cosine and sine, normalised. What has been
+            checked once is returned bit for bit.
 
         Raises:
             InvalidInput: wrong length, not finite, a quaternion (or cosine and sine of a continuous
@@ -311,10 +316,13 @@ class SpaceRobot:
         finite_array(f"{what} (base position)", checked[:3], (3,), FARTHEST)
         checked[3:7] = unit_quaternion(f"{what} (base quaternion)", checked[3:7])
         for name, (i, nq) in zip(self.joint_names, self._slots, strict=True):
-            if nq == 2 and abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
+            if nq == 1:
+                continue
+            if abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
                 raise InvalidInput(
                     f"{what} (joint {name})", checked[i : i + 2].tolist(), "cosine and sine"
                 )
+            checked[i : i + 2] = normalised(checked[i : i + 2])
         values = self.joint_values(checked)
         self.check_limits(what, values)
         return frozen(checked)

@@ -53,7 +53,7 @@ def recompute(plan: PlanData, bodies: Bodies) -> Recomputed:
     nodes = _node_clearances(plan, bodies)
     with np.errstate(invalid="ignore"):
         difference = np.where(nodes == plan.clearances, 0.0, np.abs(nodes - plan.clearances))
-    length = _length(problem, q)
+    length = _length(problem, q, plan.motion.joint_values)
     capped = nodes if problem.clearance_cap is None else np.minimum(nodes, problem.clearance_cap)
     objective = length / unit + problem.delta * float(np.sum(unit / capped[1:-1]))
     scale = max(abs(objective), 1e-12)
@@ -83,11 +83,16 @@ def _node_clearances(plan: PlanData, bodies: Bodies) -> Array:
     return nodes
 
 
-def _length(problem: Problem, q: Array) -> float:
-    """L [m] of configurations (m + 1, nq)."""
+def _length(problem: Problem, q: Array, joint_values: Array) -> float:
+    """L [m] of configurations (m + 1, nq), whose continuous joints do not tell whole turns.
+
+    Args:
+        problem: the problem.
+        q: (m + 1, nq).
+        joint_values: (m + 1, nd) of them, with whole turns [rad or m].
+    """
     m, robot = problem.lattice.divisions, problem.robot
-    steps = np.diff(robot.joint_values(q), axis=0)
-    steps = np.where(np.isinf(robot.upper), (steps + np.pi) % (2 * np.pi) - np.pi, steps)
+    steps = np.diff(joint_values, axis=0)
     straight = steps.mean(axis=0)  # postures displace nothing at start and goal
     weights = np.where(robot.prismatic, problem.position_weight, problem.rotation_weight)
     floats = problem.mode.floats  # the base's displacement is then not part of L

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 MOMENTUM_LIMIT = 1e-9
 """Allowed relative error of angular momentum."""
+GOAL_LIMIT = 1e-6
+"""Allowed error of a demanded goal attitude [rad]."""
 
 
 @dataclass(frozen=True)
@@ -186,9 +188,9 @@ def _ends_and_limits(plan: PlanData) -> list[str]:
         if overlap < 1.0 - AGREEMENT:
             problems.append("the motion does not end at the goal's attitude")
     if problem.reach_attitude:
-        overlap = min(1.0, abs(float(last[3:7] @ problem.goal[3:7])))
-        if (missed := np.degrees(2.0 * np.arccos(overlap))) > 1.0:
-            problems.append(f"the goal's attitude is missed by {missed:.3g} degrees")
+        chord = min(np.linalg.norm(last[3:7] - sign * problem.goal[3:7]) for sign in (1.0, -1.0))
+        if (missed := 4.0 * np.arcsin(0.5 * chord)) > GOAL_LIMIT:
+            problems.append(f"the goal's attitude is missed by {missed:.3g} rad")
     corners = plan.at(np.arange(len(plan.configurations)) / problem.lattice.divisions)
     if np.abs(corners - plan.configurations).max() > AGREEMENT:
         problems.append("the motion does not pass through the plan's configurations")

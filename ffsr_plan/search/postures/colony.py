@@ -92,6 +92,10 @@ class PostureColony:
         """Exclude the edge by which a path (m + 1, 2) leaves a layer."""
         self.grid = without_edge(self.grid, layer, path)
 
+    def demand(self, free_error: float) -> None:
+        """Let the goal attitude be missed by less: by `free_error` [rad] without cost."""
+        self.grid = self.grid._replace(free_error=free_error)
+
     def annealed(
         self, path: IntArray, shifts: int, hot: float, cold: float
     ) -> tuple[IntArray, float]:
