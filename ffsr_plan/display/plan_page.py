@@ -51,7 +51,7 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
     log = CommandLog()
     viewer = meshcat.Visualizer(window=log)
     problem, scene = plan.problem, plan.problem.scene
-    samples = problem.lattice.divisions * _frames_per_edge(plan) + 1
+    samples = problem.lattice.divisions * frames_per_edge(plan) + 1
     frames = motion_frames(problem.robot, plan.at(np.linspace(0.0, 1.0, samples)))
     centers, radii = frames.bounding_spheres()
     view = set_up(viewer, problem, centers, radii)
@@ -76,7 +76,7 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
     return html_page("plan", data)
 
 
-def _frames_per_edge(plan: PlanData) -> int:
+def frames_per_edge(plan: PlanData) -> int:
     """More than the usual number where a joint goes far on an edge."""
     farthest = float(np.max(np.abs(np.diff(plan.motion.joint_values, axis=0)), initial=0.0))
     most = max(_FRAMES_PER_EDGE, _MOST_FRAMES // plan.motion.edges)
