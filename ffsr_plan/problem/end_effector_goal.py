@@ -46,8 +46,9 @@ def inverse_kinematics(
 ) -> Array:
     """A goal configuration at which a frame has the wanted pose, within the joint limits.
 
-    A plan from `start` ends with this configuration on a lattice without posture axes; with posture
-    axes, `Problem(..., reach_attitude=True)` brings the base to its attitude. The search is local
+    A plan from `start` ends with this configuration on a lattice without posture axes. With posture
+    axes it takes `Problem(..., reach_attitude=True)`, which `Problem.reaching` and scenario files
+    set: without it the base arrives at another attitude, and the frame misses its pose. The search is local
     (damped least squares): from the start's joint values first, then from random ones, until the
     pose is met. A revolute joint whose limits span more than a turn goes the shorter way: where
     wheels hold the base, by whole turns less; in the other modes, where a whole turn changes the

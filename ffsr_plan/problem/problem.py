@@ -59,10 +59,13 @@ class Problem:
         start: (nq,) start configuration.
         goal: (nq,) goal configuration. In the mode `free-flying` its attitude is not demanded: the
             attitude follows from the arms' motion. In the mode `free-floating` its position is not
-            demanded either.
+            demanded either. Joints go straight to its values, a revolute one with limits beyond a
+            turn the longer way too, if the values say so; continuous ones go the shorter way.
         mode: what actuates the base. `free-flying`: thrusters translate it along the lattice,
             acting through the centre of mass; the attitude reacts to the arms. `attitude-held`:
-            wheels hold the attitude interpolated from start to goal. `free-floating`: attitude and
+            wheels hold the attitude interpolated from start to goal, through the smaller angle; of
+            half a turn, within 2e-10 rad, in the sense that is positive about the first axis of the
+            base (x, y, z) that takes part. `free-floating`: attitude and
             position react; the centre of mass stays where it is.
         lattice: layers and offsets; None for `Lattice()`.
         delta: clearance weight of Eq. 8, in units of length squared, >= 0.
@@ -72,8 +75,8 @@ class Problem:
         position_weight: metres of length per metre of translation (Eq. 4).
         rotation_weight: metres of length per radian of joint or held-base rotation (Eq. 4).
         tolerance: clearance [m] below which an edge may count as blocked.
-        reach_attitude: whether the arms have to bring the base to the goal's attitude; in the modes
-            whose attitude reacts, on a lattice with posture axes.
+        reach_attitude: whether the arms have to bring the base to the goal's attitude, within 1e-8
+            rad; in the modes whose attitude reacts, on a lattice with posture axes.
 
     Raises:
         InvalidInput: naming the field, its value and what is allowed.
