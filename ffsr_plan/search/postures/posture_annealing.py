@@ -90,12 +90,14 @@ class PostureAnnealing(AnnealingSettings):
         for _ in range(_PROOF_ATTEMPTS):
             proof, proven_path = prove_path(lattice, *corners(lattice, path)), path
             queries += proof.prover.queries
-            if proof.holds or result.interrupted:
+            if proof.holds or result.interrupted or request.stop_requested():
                 break
             for edge in proof.refused:
                 colony.refuse(edge.layer, path)
                 refused += 1
-            path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL)
+            path, _ = colony.annealed(
+                path, shifts, *_TEMPERATURES_AFTER_REFUSAL, request.stop_requested
+            )
         _check_proof(problem, proof)
         lattice_objective = objective_of(lattice, proof)
         if problem.reach_attitude:
@@ -111,7 +113,7 @@ class PostureAnnealing(AnnealingSettings):
         if request.workers == 1:
             outcomes = _run_colonies(job, rngs, request.monitor())
         else:
-            outcomes = run_on_workers(_run_colonies, job, rngs, request.workers, request.time_limit)
+            outcomes = run_on_workers(_run_colonies, job, rngs, request)
         solutions = [outcome for outcome in outcomes if isinstance(outcome, Solution)]
         if not solutions:
             raise next(outcome for outcome in outcomes if isinstance(outcome, FfsrPlanError))
@@ -174,8 +176,7 @@ def _run_colonies(
             outcomes.append(planner.solve(problem, rng, request))
         except FfsrPlanError as error:
             outcomes.append(error)
-        last = outcomes[-1]
-        if isinstance(last, Solution) and last.interrupted and not monitor.past_deadline():
+        if monitor.stop_requested():
             break  # by Ctrl-C: no more colonies
     return outcomes
 
