@@ -8,6 +8,7 @@ it really leads to.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -74,12 +75,8 @@ class PostureColony:
         self.best_cost = self.cost(self.best)
 
     def search(self, monitor: SearchMonitor) -> PosturePath:
-        """Run the ants, then the annealings. Ctrl-C and the monitor end both early."""
-        interrupted = False
-        try:
-            interrupted = self._run_ants(monitor) or self._run_annealings(monitor)
-        except KeyboardInterrupt:
-            interrupted = True
+        """Run the ants, then the annealings. The monitor ends both early."""
+        interrupted = self._run_ants(monitor) or self._run_annealings(monitor)
         history = History.of_rows(np.array(self._records, dtype=np.float64))
         return PosturePath(self.best, self.best_cost, history, self._trails(), interrupted)
 
@@ -97,7 +94,12 @@ class PostureColony:
         self.grid = self.grid._replace(free_error=free_error)
 
     def annealed(
-        self, path: IntArray, shifts: int, hot: float, cold: float
+        self,
+        path: IntArray,
+        shifts: int,
+        hot: float,
+        cold: float,
+        stop_requested: Callable[[], bool] = bool,
     ) -> tuple[IntArray, float]:
         """The best path of an annealing from `path`, and its cost [m].
 
@@ -106,16 +108,25 @@ class PostureColony:
             shifts: number of segment shifts to try.
             hot: temperature at the beginning [m].
             cold: temperature at the end [m].
+            stop_requested: asked several times a second; whether to end with what there is.
         """
         weights = np.array(self._settings.attitude_weights)
-        return self._shifted(path, shifts, hot, cold, weights)
+        return self._shifted(path, shifts, hot, cold, weights, stop_requested)
 
     def _shifted(
-        self, path: IntArray, shifts: int, hot: float, cold: float, weights: Array
+        self,
+        path: IntArray,
+        shifts: int,
+        hot: float,
+        cold: float,
+        weights: Array,
+        stop_requested: Callable[[], bool],
     ) -> tuple[IntArray, float]:
         result = np.empty_like(path)
-        cost = anneal(self.grid, self._rng, path, shifts, hot, cold, weights, result)
-        return result, float(cost)
+        cost = anneal(
+            self.grid, self._rng, path, shifts, hot, cold, weights, result, stop_requested
+        )
+        return result, cost
 
     def _run_ants(self, monitor: SearchMonitor) -> bool:
         """Run cycles until none improves the path any more; whether the monitor ended them."""
@@ -127,7 +138,7 @@ class PostureColony:
                 break
             leader = paths[int(np.argmin(costs))]
             improved, cost = self._shifted(
-                leader, settings.descent_shifts, 1e-3, 1e-4, late_weights
+                leader, settings.descent_shifts, 1e-3, 1e-4, late_weights, monitor.expired
             )
             stale += 1
             if cost < self.best_cost - _LEAST_GAIN:
@@ -178,7 +189,7 @@ class PostureColony:
         problem = self._lattice.problem
         shifts = len(self._walked) * self._settings.shifts_per_layer(problem.reach_attitude)
         for hot, cold in self._settings.temperatures:
-            path, cost = self.annealed(self.best, shifts, hot, cold)
+            path, cost = self.annealed(self.best, shifts, hot, cold, monitor.expired)
             if cost < self.best_cost - _LEAST_GAIN:
                 self.best, self.best_cost = path, cost
             self._records.append((self.best_cost, cost, cost, 1))

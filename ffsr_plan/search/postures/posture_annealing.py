@@ -96,7 +96,7 @@ class PostureAnnealing(AnnealingSettings):
             if proofs.prove(path) or result.interrupted or monitor.expired():
                 break
             shifts = _SHIFTS_AFTER_REFUSAL * problem.lattice.divisions
-            path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL)
+            path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL, monitor.expired)
         return proofs.solution(result)
 
     def _best_of_colonies(
@@ -106,7 +106,7 @@ class PostureAnnealing(AnnealingSettings):
         if request.workers == 1:
             outcomes = _run_colonies(job, rngs, request.monitor())
         else:
-            outcomes = run_on_workers(_run_colonies, job, rngs, request.workers, request.time_limit)
+            outcomes = run_on_workers(_run_colonies, job, rngs, request)
         solutions = [outcome for outcome in outcomes if isinstance(outcome, Solution)]
         if not solutions:
             errors = [outcome for outcome in outcomes if isinstance(outcome, FfsrPlanError)]
@@ -219,8 +219,7 @@ def _run_colonies(
             outcomes.append(planner.solve(problem, rng, request))
         except FfsrPlanError as error:
             outcomes.append(error)
-        last = outcomes[-1]
-        if isinstance(last, Solution) and last.interrupted and not monitor.past_deadline():
+        if monitor.stop_requested():
             break  # by Ctrl-C: no more colonies
     return outcomes
 
