@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import io
 from contextlib import suppress
 from pathlib import Path
 
 from ffsr_plan.core.errors import InvalidInput
+
+_LARGEST_FILE = 256_000_000  # [bytes] of a text; what is made of it takes several times as much
 
 
 def read_text(what: str, path: Path, encoding: str = "utf-8") -> str:
@@ -20,10 +23,17 @@ def read_text(what: str, path: Path, encoding: str = "utf-8") -> str:
         Its text, line ends as newlines.
 
     Raises:
-        InvalidInput: a file that cannot be read or is not UTF-8.
+        InvalidInput: a file that cannot be read, is not UTF-8 or has more than 256 MB.
     """
     try:
-        return path.read_text(encoding=encoding)
+        content = bytearray()
+        with path.open("rb") as file:
+            while part := file.read(2**20):  # in parts: a device may have no end
+                content += part
+                if len(content) > _LARGEST_FILE:
+                    raise ValueError("more than 256 MB")
+        with io.TextIOWrapper(io.BytesIO(content), encoding=encoding) as text:
+            return text.read()
     except (OSError, ValueError) as error:  # a UnicodeDecodeError is a ValueError
         reason = getattr(error, "strerror", None) or error  # without the path once more
         raise InvalidInput(what, str(path), f"a readable UTF-8 file ({reason})") from None

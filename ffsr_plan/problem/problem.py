@@ -49,7 +49,7 @@ class ModeName(Rule):
         return {"type": "string", "enum": [mode.value for mode in Mode]}
 
 
-@settings(eq=False)
+@settings
 class Problem:
     """A planning problem.
 
