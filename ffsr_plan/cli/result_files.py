@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.text_files import write_files
 
 if TYPE_CHECKING:
     from ffsr_plan.planning.certified_plan import Plan
@@ -16,7 +18,9 @@ RESULTS = ("plan.json", "plan.html", "path.png", "clearance.png", "convergence.p
 
 
 def write_results(plan: Plan, title: str, target: Path) -> None:
-    """Write plan, page and figures into a directory.
+    """Write plan, page and figures into a directory: all files or none, and each of them whole.
+
+    If that fails, the plan alone is written, under a name that is not in use.
 
     Args:
         plan: the plan.
@@ -24,17 +28,25 @@ def write_results(plan: Plan, title: str, target: Path) -> None:
         target: the directory, made if it is not there.
 
     Raises:
-        InvalidInput: the directory cannot be written.
+        InvalidInput: the directory or a file in it cannot be written.
     """
-    from ffsr_plan.display.figures import write_figures
+    from ffsr_plan.display.figures import figure_files
+    from ffsr_plan.plans.plan_file import to_text
+    from ffsr_plan.display.plan_page import page
 
     try:
         target.mkdir(parents=True, exist_ok=True)
-        plan.save(target / "plan.json")  # first: if anything later fails, the plan is kept
-        plan.write_html(target / "plan.html", title)
-        write_figures(plan, target)
     except OSError as error:
         raise InvalidInput("--out", str(target), f"a writable directory ({error})") from None
+    try:
+        contents = {"plan.json": to_text(plan), "plan.html": page(plan, title)}
+        files = {target / name: content for name, content in contents.items()}
+        files |= {target / name: picture for name, picture in figure_files(plan).items()}
+        write_files("--out", files)
+    except Exception:
+        with suppress(InvalidInput):
+            plan.save(unused_path(target / "plan.json"))
+        raise
 
 
 def check_target(target: Path, force: bool) -> Path:

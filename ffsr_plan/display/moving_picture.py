@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,9 +10,9 @@ import numpy as np
 
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.checks import one_of, whole_number
-from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.core.text_files import write_files
 from ffsr_plan.display.picture_data import MotionFrames, drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.projection import Outline, outlines, view_axes, visible_shapes
 from ffsr_plan.display.scene_objects import TIPS, TRACK, glow
@@ -84,12 +85,9 @@ def write_gif(
     palette = _palette(pictures, plan)
     first, *rest = [picture.quantize(palette=palette, dither=Dither.NONE) for picture in pictures]
     durations = [_FRAME_TIME] * (count - 1) + [_LAST_TIME]
-    try:
-        first.save(
-            path, format="GIF", save_all=True, append_images=rest, duration=durations, loop=0
-        )
-    except OSError as error:
-        raise InvalidInput("path", str(path), f"a file that can be written ({error})") from None
+    content = io.BytesIO()
+    first.save(content, format="GIF", save_all=True, append_images=rest, duration=durations, loop=0)
+    write_files("path", {Path(path): content.getvalue()})
 
 
 def _scene(plan: PlanData, count: int, axes: Array) -> _Scene:

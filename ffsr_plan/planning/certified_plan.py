@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ffsr_plan.core.checks import whole_number
-from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
+from ffsr_plan.core.text_files import write_text
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
@@ -143,14 +143,18 @@ class Plan(PlanData):
         write_csv(Path(path), path_table(self.motion, np.linspace(0.0, 1.0, rows)))
 
     def write_html(self, path: str | Path, title: str = "") -> None:
-        """Write one self-contained page that shows the motion; it needs no network."""
+        """Write one self-contained page that shows the motion; it needs no network.
+
+        Args:
+            path: of the file; an existing file is replaced.
+            title: heading; by default the robot and the mode.
+
+        Raises:
+            InvalidInput: a file that cannot be written.
+        """
         from ffsr_plan.display.plan_page import page
 
-        text = page(self, title)
-        try:
-            Path(path).write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise InvalidInput("page", str(path), f"a file that can be written ({error})") from None
+        write_text("page", Path(path), page(self, title))
 
     def write_gif(
         self, path: str | Path, *, frames: int = 60, width: int = 720, view: str = "path"

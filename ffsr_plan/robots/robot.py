@@ -17,7 +17,7 @@ from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternio
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
-from ffsr_plan.core.text_files import write_text
+from ffsr_plan.core.text_files import write_files
 from ffsr_plan.robots.collision_shapes import (
     Containers,
     Replacement,
@@ -342,9 +342,10 @@ class SpaceRobot:
         target = Path(path)
         if target.suffix != ".urdf":
             raise InvalidInput("path", str(path), "a path that ends in .urdf")
-        write_text("path", target, self.urdf)
+        files: dict[Path, str | bytes] = {target: self.urdf}
         if self.srdf:
-            write_text("path", target.with_suffix(".srdf"), self.srdf)
+            files[target.with_suffix(".srdf")] = self.srdf
+        write_files("path", files)
 
     def link_of(self, geometry: pin.GeometryObject) -> str:
         """Name of the URDF link that a collision or visual shape belongs to."""
