@@ -21,6 +21,7 @@ from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
+_LEAST, _LARGEST = 1e-9, 1e9  # of weights and units: no product of them overflows
 _SAME = 1e-12  # metres or radians by which two positions or joint values may differ and be equal
 
 
@@ -49,9 +50,9 @@ class ModeName(Rule):
         return {"type": "string", "enum": [mode.value for mode in Mode]}
 
 
-@settings(eq=False)
+@settings
 class Problem:
-    """A planning problem.
+    """A planning problem. Two are equal if all their fields are.
 
     Attributes:
         robot: the robot.
@@ -90,12 +91,12 @@ class Problem:
     lattice: Annotated[Given[Lattice, Lattice | None], NoneMeans(Lattice)] = setting(
         default_factory=Lattice
     )
-    delta: Annotated[float, Number(at_least=0.0)] = 0.0
-    length_unit: Annotated[float, Number(above=0.0)] = 1.0
-    clearance_cap: Annotated[float, Number(above=0.0)] | None = None
-    position_weight: Annotated[float, Number(above=0.0)] = 1.0
-    rotation_weight: Annotated[float, Number(at_least=0.0)] = 1.0
-    tolerance: Annotated[float, Number(at_least=1e-7)] = 1e-4
+    delta: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 0.0
+    length_unit: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] = 1.0
+    clearance_cap: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] | None = None
+    position_weight: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] = 1.0
+    rotation_weight: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 1.0
+    tolerance: Annotated[float, Number(at_least=1e-7, at_most=_LARGEST)] = 1e-4
     reach_attitude: Annotated[bool, Truth()] = False
 
     def __post_init__(self) -> None:

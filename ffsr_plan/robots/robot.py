@@ -12,11 +12,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, frozen
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
-from ffsr_plan.core.read_only_dict import ReadOnlyDict
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
 from ffsr_plan.core.text_files import write_files
 from ffsr_plan.robots.collision_shapes import (

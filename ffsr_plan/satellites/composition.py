@@ -57,7 +57,7 @@ class PathOrName(Rule):
         raise InvalidInput(what, value, self.meaning)
 
 
-@settings(eq=False, of="a mount")
+@settings(of="a mount")
 class Mount:
     """An arm and its place on the bus.
 

@@ -1,0 +1,88 @@
+"""Estimates of memory and work, made from counts before either is spent.
+
+Whoever is about to make large arrays states their sizes here. The estimates are of the right order,
+within a factor of two or three of what is measured (tests/system/test_memory_estimates.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ffsr_plan.core.errors import InvalidInput
+
+MOST_BYTES = 2e9
+"""Memory [bytes] that one task may take."""
+MOST_STEPS = 1e9
+"""Repetitions of a small piece of work, such as a distance or a node, that one task may take."""
+_PREFIXES = ("", "k", "M", "G", "T", "P", "E")
+
+
+def check_memory(
+    what: str, counts: Mapping[str, int], bytes_each: float, advice: str, fixed: float = 0.0
+) -> None:
+    """Raise `InvalidInput` if arrays would take more memory than `MOST_BYTES`.
+
+    Args:
+        what: the field or file that decides the counts, for the message.
+        counts: the counts by name, whose product is the number of elements.
+        bytes_each: memory of an element, all arrays of that shape together [bytes].
+        advice: what would help, for the message.
+        fixed: memory that something else takes at the same time [bytes].
+    """
+    number = 1
+    for count in counts.values():
+        number *= int(count)
+    total = _as_float(number) * bytes_each + fixed
+    if total > MOST_BYTES:
+        allowed = f"at most {_in_bytes(MOST_BYTES)} of memory: {advice}"
+        raise InvalidInput(what, Estimate(f"{product(counts)}: {_in_bytes(total)}"), allowed)
+
+
+def check_work(what: str, counts: Mapping[str, int], advice: str) -> None:
+    """Raise `InvalidInput` if more than `MOST_STEPS` steps of work would be necessary.
+
+    Args:
+        what: the field that decides the counts, for the message.
+        counts: the counts by name, whose product is the number of steps.
+        advice: what would help, for the message.
+    """
+    number = 1
+    for count in counts.values():
+        number *= int(count)
+    if _as_float(number) > MOST_STEPS:
+        found = Estimate(f"{product(counts)}: {_as_float(number):.2g} steps")
+        raise InvalidInput(what, found, f"at most {MOST_STEPS:.0e} steps of work: {advice}")
+
+
+class Estimate(str):
+    """A text that errors show without quotes."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def product(counts: Mapping[str, int]) -> str:
+    """The counts with their names, as factors: `layers 41 x nodes 11`."""
+    return " x ".join(f"{name} {_shown(int(count))}" for name, count in counts.items())
+
+
+def _shown(count: int) -> str:
+    return str(count) if count < 10**12 else f"{_as_float(count):.3g}"
+
+
+def _as_float(number: int) -> float:
+    try:
+        return float(number)
+    except OverflowError:
+        return float("inf")
+
+
+def _in_bytes(amount: float) -> str:
+    """An amount of memory with a prefix: `80 GB`."""
+    for prefix in _PREFIXES:
+        if amount < 1000.0 or prefix == _PREFIXES[-1]:
+            return f"{amount:.3g} {prefix}B"
+        amount /= 1000.0
+    raise AssertionError
