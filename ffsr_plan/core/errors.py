@@ -56,6 +56,10 @@ class InvalidInput(FfsrPlanError, ValueError):
         return f"{what}: got {_shorten(self.value)}; allowed: {allowed}"
 
 
+class UncheckedLinks(UserWarning):
+    """A robot has links with mass but no shape, which nothing keeps clear of obstacles."""
+
+
 class PlanningError(FfsrPlanError):
     """The input is valid, but no plan exists or none was found."""
 

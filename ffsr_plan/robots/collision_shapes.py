@@ -21,7 +21,8 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.meshes.hull_reduction import beyond, reduced
 from ffsr_plan.meshes.mesh_files import hull, hull_corners
-from ffsr_plan.robots.urdf_validation import LARGEST, attribute_numbers
+from ffsr_plan.robots.urdf.number_texts import attribute_numbers
+from ffsr_plan.robots.urdf.origins import LARGEST
 
 CONTAINERS = ("hull", "capsule")
 SIDES = 24

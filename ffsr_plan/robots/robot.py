@@ -25,6 +25,8 @@ from ffsr_plan.robots.collision_shapes import (
 from ffsr_plan.robots.kinematics import Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import named_postures
+from ffsr_plan.robots.urdf.inertias import Balanced
+from ffsr_plan.robots.urdf.joints import RateLimits
 
 _HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
 
@@ -54,7 +56,8 @@ class SpaceRobot:
 
     Attributes:
         name: name of the robot.
-        urdf: the URDF text that the robot was made from.
+        urdf: what was read of the URDF, as a URDF of its own: known elements only, every number
+            with all its digits, orientations as roll, pitch and yaw.
         model: Pinocchio model, the root link on a free-flyer joint.
         collision_model: collision shapes and the pairs checked for self-collision: all pairs except
             those of adjacent links and those that the SRDF exempts.
@@ -66,10 +69,18 @@ class SpaceRobot:
             URDF, before its scale [m]. With these the robot can be made without the mesh files.
         srdf: the SRDF text; empty if there is none.
         disabled_pairs: pairs of links that the SRDF allows to touch, sorted.
+        unchecked_links: links with a mass or a visual shape but no collision shape: nothing keeps
+            them clear of obstacles, and `Plan.verify` does not check them either.
+        balanced: links whose inertia tensor was balanced; see `load_robot`.
+        rate_limits: limits of acceleration and jerk by joint, from URDF 1.2.
         joint_names: (nd) names of the joints.
         lower: (nd,) lower joint limits [rad or m], -inf for continuous joints.
         upper: (nd,) upper joint limits [rad or m], inf for continuous joints.
         prismatic: (nd,) booleans, true where the joint value is in metres.
+        acceleration: (nd,) limits of the joints' acceleration [rad/s^2 or m/s^2], from URDF 1.2,
+            the lesser of its `acceleration` and `deceleration`; inf where the URDF has none.
+        jerk: (nd,) limits of the joints' jerk [rad/s^3 or m/s^3], from URDF 1.2; inf where the URDF
+            has none.
         postures: joint values [rad or m] by joint, by name of the posture, from the group states of
             the SRDF. A posture may list some of the joints only.
     """
@@ -85,10 +96,15 @@ class SpaceRobot:
     meshes: Mapping[str, Array] = field(default_factory=dict)
     srdf: str = ""
     disabled_pairs: tuple[tuple[str, str], ...] = ()
+    unchecked_links: tuple[str, ...] = ()
+    balanced: tuple[Balanced, ...] = ()
+    rate_limits: Mapping[str, RateLimits] = field(default_factory=dict, repr=False)
     joint_names: tuple[str, ...] = field(init=False)
     lower: Array = field(init=False)
     upper: Array = field(init=False)
     prismatic: NDArray[np.bool_] = field(init=False)
+    acceleration: Array = field(init=False)
+    jerk: Array = field(init=False)
     postures: Mapping[str, Mapping[str, float]] = field(init=False)
     _slots: tuple[tuple[int, int], ...] = field(init=False, repr=False)  # index and length in q
 
@@ -101,11 +117,14 @@ class SpaceRobot:
         names = tuple(self.model.names[j] for j in range(2, self.model.njoints))
         prismatic = [j.shortname().startswith("JointModelP") for j in joints]
         limits = dict(zip(names, zip(lower, upper, strict=True), strict=True))
+        rates = [self.rate_limits.get(name, RateLimits(np.inf, np.inf)) for name in names]
         derived = {
             "joint_names": names,
             "lower": frozen(np.array(lower, dtype=np.float64)),
             "upper": frozen(np.array(upper, dtype=np.float64)),
             "prismatic": frozen(np.array(prismatic, dtype=np.bool_)),
+            "acceleration": frozen(np.array([r.acceleration for r in rates], dtype=np.float64)),
+            "jerk": frozen(np.array([r.jerk for r in rates], dtype=np.float64)),
             "postures": ReadOnlyDict(
                 {
                     name: ReadOnlyDict(values)
@@ -132,6 +151,8 @@ class SpaceRobot:
             "links": str(len(self.link_names)),
             "postures": ", ".join(self.postures) or "none",
         }
+        if self.unchecked_links:
+            rows["not checked"] = ", ".join(self.unchecked_links)
         return html_table(f"SpaceRobot {self.name}", rows)
 
     @property

@@ -14,7 +14,7 @@ from ffsr_plan.core.checks import finite_array
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, Numbers, Rule, Text, Vector
 from ffsr_plan.core.settings import Given, setting, settings
-from ffsr_plan.robots.urdf_validation import LARGEST
+from ffsr_plan.robots.urdf.origins import LARGEST
 
 
 @dataclass(frozen=True)

@@ -25,11 +25,11 @@ from ffsr_plan.meshes.mesh_files import find, hull, surface
 from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.robots.robot import SpaceRobot
-from ffsr_plan.robots.urdf_validation import LARGEST, attribute_numbers
+from ffsr_plan.robots.urdf.number_texts import attribute_numbers, attribute_text
+from ffsr_plan.robots.urdf.origins import LARGEST
 from ffsr_plan.satellites.arms import Arm, load_arm
 from ffsr_plan.satellites.bus import Bus
 from ffsr_plan.satellites.urdf_xml import (
-    attribute_text,
     box_shape,
     bus_elements,
     comment,
