@@ -60,9 +60,7 @@ def placed_links(robot: ElementTree.Element) -> dict[str, Placed]:
                 on = placed[parent]
                 rotation, position = transform(joint)
                 position = on.rotation @ position + on.position
-                placed[child] = Placed(
-                    links[child], on.joint, on.rotation @ rotation, position
-                )
+                placed[child] = Placed(links[child], on.joint, on.rotation @ rotation, position)
             else:
                 name = str(joint.get("name"))
                 placed[child] = Placed(links[child], name, np.eye(3), np.zeros(3))
@@ -161,7 +159,9 @@ def _compare_joints(
     """Compare placement, axis and limits of each moving joint."""
     moving = {str(j.get("name")): j for j in robot.findall("joint") if j.get("type") != "fixed"}
     if sorted(moving) != sorted(model.names[2:]):
-        raise InternalError(f"joints {list(model.names[2:])} in Pinocchio, {list(moving)} in the URDF")
+        raise InternalError(
+            f"joints {list(model.names[2:])} in Pinocchio, {list(moving)} in the URDF"
+        )
     data = model.createData()
     pin.computeJointJacobians(model, data, pin.neutral(model))
     for name, joint in moving.items():
@@ -182,9 +182,7 @@ def _compare_joints(
         _compare_limits(about, joint, model, number)
 
 
-def _compare_limits(
-    about: str, joint: ElementTree.Element, model: pin.Model, number: int
-) -> None:
+def _compare_limits(about: str, joint: ElementTree.Element, model: pin.Model, number: int) -> None:
     index, place = model.joints[number].idx_v, model.joints[number].idx_q
     limit = joint.find("limit")
     given = {} if limit is None else limit.attrib

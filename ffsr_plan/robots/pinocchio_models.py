@@ -57,9 +57,7 @@ def visual_model(
         return pin.GeometryModel()
 
 
-def _with_shapes(
-    robot: ElementTree.Element, wanted: Callable[[ElementTree.Element], bool]
-) -> str:
+def _with_shapes(robot: ElementTree.Element, wanted: Callable[[ElementTree.Element], bool]) -> str:
     """Text of a robot, of its shapes only those that are wanted."""
     copy = ElementTree.Element(robot.tag, robot.attrib)
     for part in robot:

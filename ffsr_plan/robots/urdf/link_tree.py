@@ -27,10 +27,15 @@ def without_world(robot: ElementTree.Element, where: str) -> None:
     if not floating:
         return
     joint = floating[0]
-    ends = {key: end.get("link") for key in ("parent", "child") if (end := joint.find(key)) is not None}
+    ends = {
+        key: end.get("link") for key in ("parent", "child") if (end := joint.find(key)) is not None
+    }
     worlds = [link for link in robot.findall("link") if link.get("name") == ends.get("parent")]
     others = [
-        end.get("link") for other in robot.findall("joint") if other is not joint for end in other
+        end.get("link")
+        for other in robot.findall("joint")
+        if other is not joint
+        for end in other
         if end.tag in ("parent", "child")
     ]
     about = f"{where}, joint '{joint.get('name')}', type"

@@ -162,9 +162,7 @@ def _add_material(
         ElementTree.SubElement(element, "color", rgba=colour)
 
 
-def _colour(
-    material: ElementTree.Element, where: str, colours: Mapping[str, str]
-) -> str | None:
+def _colour(material: ElementTree.Element, where: str, colours: Mapping[str, str]) -> str | None:
     check_element(material, where)
     colour = material.find("color")
     if colour is None:

@@ -33,9 +33,7 @@ class PlacedElement(ElementTree.Element):
     column = 0
 
 
-def refused(
-    element: ElementTree.Element, where: str, value: object, allowed: str
-) -> InvalidInput:
+def refused(element: ElementTree.Element, where: str, value: object, allowed: str) -> InvalidInput:
     """The error for an element's fault, with the element's line and column if it has them.
 
     Args:
