@@ -50,9 +50,7 @@ def corrected(
         slope = attitude_slopes(robot, path, directions, reaction.increments)
         share = 1.0
         while share >= _LEAST_STEP:
-            inner = _within_limits(
-                robot, path[1:-1], directions[1:-1], slope, share * missed, free
-            )
+            inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, share * missed, free)
             if inner is None:
                 return None
             trial = np.vstack([path[:1], inner, path[-1:]])
