@@ -48,12 +48,13 @@ def inverse_kinematics(
 
     A plan from `start` ends with this configuration on a lattice without posture axes. With posture
     axes it takes `Problem(..., reach_attitude=True)`, which `Problem.reaching` and scenario files
-    set: without it the base arrives at another attitude, and the frame misses its pose. The search is local
-    (damped least squares): from the start's joint values first, then from random ones, until the
-    pose is met. A revolute joint whose limits span more than a turn goes the shorter way: where
-    wheels hold the base, by whole turns less; in the other modes, where a whole turn changes the
-    base's reaction, a pose at which no joint goes more than half a turn is preferred to one at
-    which a joint does.
+    set: without it the base arrives at another attitude, and the frame misses its pose.
+
+    The search is local (damped least squares): from the start's joint values first, then from
+    random ones, until the pose is met. A revolute joint whose limits span more than a turn goes the
+    shorter way: where wheels hold the base, by whole turns less; in the other modes, where a whole
+    turn changes the base's reaction, a pose at which no joint goes more than half a turn is
+    preferred to one at which a joint does.
 
     Args:
         robot: the robot.

@@ -1,4 +1,4 @@
-"""A goal by pose is met to 1e-6 m and 1e-6 rad, or the error holds the plan that misses it least."""
+"""A goal by pose is met to 1e-6 m and 1e-6 rad, or the error holds the best plan."""
 
 import pickle
 from dataclasses import replace
@@ -13,7 +13,7 @@ from ffsr_plan.core.arrays import frozen
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.plans.plan_summary import plan_rows
 from ffsr_plan.search.postures import path_proof, posture_annealing
-from ffsr_plan.search.postures.path_proof import corrected_proof, corners, prove_path
+from ffsr_plan.search.postures.path_proof import corners, corrected_proof, prove_path
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from tests.helpers.frame_poses import angles_of, pose_of
 from tests.helpers.spatial_robot import REST, spatial_problem, spatial_robot
@@ -43,14 +43,13 @@ def reaching(seed, mode, with_attitude=False):
 
 @pytest.mark.parametrize("mode", ["free-flying", "free-floating"])
 def test_the_tip_is_at_its_pose_or_the_error_says_by_how_much_not(mode):
-    met = leaned = 0
+    met, leaned, errors = 0, 0, []
     for seed in (0, 1, 2, 3, 8):
         problem, position, rotation = reaching(seed, mode, with_attitude=seed in (2, 8))
         try:
             plan = fp.plan(problem, QUICK, seed=0)
         except fp.AttitudeOutOfReach as error:
-            assert error.missed > 1e-8
-            assert error.missed == error.best.arrival_attitude_error
+            errors.append(error)
             continue
         except fp.PlanningError:
             continue
@@ -59,6 +58,8 @@ def test_the_tip_is_at_its_pose_or_the_error_says_by_how_much_not(mode):
         if seed in (2, 8):
             assert np.max(np.abs(turned - rotation)) <= 1e-6
         met, leaned = met + 1, leaned + bool(plan.nodes.any())
+    for error in errors:
+        assert error.missed == error.best.arrival_attitude_error > 1e-8
     assert met >= 4
     assert leaned >= 1  # of these the path of the lattice misses the pose
 
@@ -130,7 +131,7 @@ def test_of_several_colonies_the_closest_miss_is_told(monkeypatch):
     assert caught.value.missed == 0.1
 
 
-LOOPS = "000 100 110 010 000 010 011 001 000 100 101 001 000".split()
+LOOPS = "000", "100", "110", "010", "000", "010", "011", "001", "000", "100", "101", "001", "000"
 
 
 def lattice_path():
