@@ -210,8 +210,7 @@ def unit_quaternion(what: str, value: ArrayLike) -> Array:
     """Check a unit quaternion.
 
     It is normalised, because a norm of 1 + 1e-7 would appear as a momentum residual of that size.
-    A normalised one is returned as it is, bit for bit: what is read from a file is what was
-    written.
+    A normalised one is returned as it is, bit for bit: a file gives back what was written to it.
 
     Args:
         what: name in the message.

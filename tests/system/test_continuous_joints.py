@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from ffsr_plan.display.plan_page import frames_per_edge
 from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.urdf_builders import capsule, inertial, joint, link, sphere, urdf
 
@@ -141,8 +142,6 @@ def test_the_length_counts_every_turn(spinner):
 
 
 def test_pages_show_frames_between_which_no_joint_goes_half_a_turn(spinner, tmp_path):
-    from ffsr_plan.display.plan_page import frames_per_edge
-
     plan = planned(spinner, *CASES[-1])
     steps = np.abs(np.diff(plan.motion.joint_values, axis=0))
     assert steps.max() / frames_per_edge(plan) < 1.0
