@@ -10,7 +10,10 @@ import typer
 from rich.console import Console
 
 from ffsr_plan.core.errors import FfsrPlanError, PlanningError
+from ffsr_plan.search.interruption import CtrlC
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C."""
 T = TypeVar("T")
 out_console = Console(highlight=False)
 err_console = Console(stderr=True, highlight=False)
@@ -39,9 +42,13 @@ def errors_on_stderr() -> Iterator[None]:
     """
     try:
         yield
+        if CtrlC.raised:  # a library has swallowed it
+            raise CtrlC
     except FfsrPlanError as error:
         err_console.print(f"ffsr-plan: {error}", style="red", markup=False)
         raise typer.Exit(1 if isinstance(error, PlanningError) else 2) from None
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Exception) as error:
+        if not isinstance(error, KeyboardInterrupt) and not CtrlC.raised:
+            raise
         err_console.print("ffsr-plan: interrupted", style="red")
-        raise typer.Exit(130) from None
+        raise typer.Exit(INTERRUPTED) from None

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import wait
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -86,6 +87,7 @@ def run_on_workers(
 @contextmanager
 def _ctrl_c_blocked() -> Iterator[None]:
     """Processes that the body starts never receive Ctrl-C; this one receives it after the body."""
+    resource_tracker.ensure_running()  # to start it would end the block
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
         yield

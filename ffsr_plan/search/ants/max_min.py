@@ -86,11 +86,10 @@ class MaxMinAntSystem(LatticePlanner):
                 if monitor.stop_requested() or (found and monitor.past_deadline()):
                     interrupted = True
                     break
-            else:
-                interrupted = monitor.expired() and until < self.cycles
-            if monitor.on_cycle is not None and state.counters[kernel.CYCLE] == until:
+            if monitor.on_cycle is not None and not interrupted:
                 monitor.on_cycle(_report(state, self.cycles))
-            elif time.monotonic() - begin < _SECONDS_PER_CHECK:
+            interrupted |= monitor.expired() and until < self.cycles
+            if monitor.on_cycle is None and time.monotonic() - begin < _SECONDS_PER_CHECK:
                 stride = min(2 * stride, _MOST_CYCLES_PER_CHECK)
         if not np.isfinite(state.values[kernel.BEST]):
             raise (None if interrupted else roadmap.no_path()) or PlanningError(
