@@ -1,11 +1,14 @@
 """Commands `ffsr-plan demo | plan | verify | view | export | gif | timed | robots | schema`.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
-plan that does not verify, 2 bad input, 130 interrupted without a plan.
+plan that does not verify, 2 bad input, 70 an error of the program itself, 130 interrupted without a
+plan.
 """
 
 from __future__ import annotations
 
+import io
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -223,23 +226,27 @@ def view(
 @app.command()
 def robots() -> None:
     """List the bundled robots, and the arms that `ffsr_plan.compose` can mount on a bus."""
-    from ffsr_plan.robots.summary import robot_summaries
-    from ffsr_plan.satellites.arms import arm_names
+    with errors_on_stderr():
+        from ffsr_plan.robots.summary import robot_summaries
+        from ffsr_plan.satellites.arms import arm_names
 
-    out_console.print(robot_table(robot_summaries()))
-    out_console.print(f"Arms for your own bus: {', '.join(arm_names())}")
+        out_console.print(robot_table(robot_summaries()))
+        out_console.print(f"Arms for your own bus: {', '.join(arm_names())}")
 
 
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors that complete and check TOML."""
-    import json
+    with errors_on_stderr():
+        import json
 
-    from ffsr_plan.scenario_files.scenario_schema import schema as scenario_schema
+        from ffsr_plan.scenario_files.scenario_schema import schema as scenario_schema
 
-    typer.echo(json.dumps(scenario_schema(), indent=2))
+        typer.echo(json.dumps(scenario_schema(), indent=2))
 
 
 def main() -> None:
     """Entry point of the `ffsr-plan` command."""
+    if isinstance(sys.stdout, io.TextIOWrapper):  # names of files may hold what it cannot encode
+        sys.stdout.reconfigure(errors="backslashreplace")
     app()

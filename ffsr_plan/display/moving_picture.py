@@ -10,6 +10,7 @@ import numpy as np
 
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.checks import one_of, whole_number
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.text_files import write_files
@@ -68,7 +69,7 @@ def write_gif(
 
     Args:
         plan: the plan.
-        path: file to write; an existing one is replaced.
+        path: file to write, `.gif`; an existing one is replaced.
         frames: number of pictures, at equal steps of the path parameter.
         width: of the picture [px].
         view: `path`, seen along the normal y' of the path frame, or `side`, along the lateral x'.
@@ -78,6 +79,7 @@ def write_gif(
     """
     from PIL.Image import Dither
 
+    target = checked_path("path", path, ".gif")
     count = whole_number("frames", frames, at_least=2, at_most=600)
     pixels = whole_number("width", width, at_least=300, at_most=4000)
     rows = list(VIEWS[one_of("view", view, tuple(VIEWS))])
@@ -87,7 +89,7 @@ def write_gif(
     durations = [_FRAME_TIME] * (count - 1) + [_LAST_TIME]
     content = io.BytesIO()
     first.save(content, format="GIF", save_all=True, append_images=rest, duration=durations, loop=0)
-    write_files("path", {Path(path): content.getvalue()})
+    write_files("path", {target: content.getvalue()})
 
 
 def _scene(plan: PlanData, count: int, axes: Array) -> _Scene:

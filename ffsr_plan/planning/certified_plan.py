@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ffsr_plan.core.checks import whole_number
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.checks import text, whole_number
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
 from ffsr_plan.plans import plan_file
@@ -96,7 +97,7 @@ class Plan(PlanData):
 
     def save(self, path: str | Path) -> None:
         """Write everything to a JSON file; `Plan.load` gives the same plan back, bit for bit."""
-        plan_file.write(self, Path(path))
+        plan_file.write(self, checked_path("path", path))
 
     @staticmethod
     def load(path: str | Path) -> Plan:
@@ -105,7 +106,7 @@ class Plan(PlanData):
         Raises:
             InvalidInput: no such file, cut short, or changed since it was written.
         """
-        return Plan._of(plan_file.read(Path(path)))
+        return Plan._of(plan_file.read(checked_path("path", path)))
 
     def to_dict(self) -> dict[str, Any]:
         """Everything, as in the file that `save` writes, in plain Python values fit for JSON."""
@@ -140,7 +141,8 @@ class Plan(PlanData):
         rows = self.problem.lattice.divisions + 1
         if samples is not None:
             rows = whole_number("samples", samples, at_least=2, at_most=1_000_000)
-        write_csv(Path(path), path_table(self.motion, np.linspace(0.0, 1.0, rows)))
+        target = checked_path("path", path)
+        write_csv(target, path_table(self.motion, np.linspace(0.0, 1.0, rows)))
 
     def write_html(self, path: str | Path, title: str = "") -> None:
         """Write one self-contained page that shows the motion; it needs no network.
@@ -150,11 +152,12 @@ class Plan(PlanData):
             title: heading; by default the robot and the mode.
 
         Raises:
-            InvalidInput: a file that cannot be written.
+            InvalidInput: a path or title that is none, or a file that cannot be written.
         """
         from ffsr_plan.display.plan_page import page
 
-        write_text("page", Path(path), page(self, title))
+        target = checked_path("path", path)
+        write_text("page", target, page(self, text("title", title)))
 
     def write_gif(
         self, path: str | Path, *, frames: int = 60, width: int = 720, view: str = "path"
@@ -201,7 +204,7 @@ class Plan(PlanData):
         from ffsr_plan.display.browser import serve
         from ffsr_plan.display.plan_page import page
 
-        return serve(page(self, title), port, block, open_browser)
+        return serve(page(self, text("title", title)), port, block, open_browser)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.checks import finite_array, number
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.dynamics.inverse_dynamics import States, states
 from ffsr_plan.dynamics.motion import Motion
@@ -129,8 +130,8 @@ class TimedPlan:
         Raises:
             InvalidInput: a file that cannot be written, or a rate that is not possible.
         """
-        times = self.clock(rate)
-        write_csv(Path(path), trajectory_table(self.motion.robot, times, self.at(times)))
+        target, times = checked_path("path", path), self.clock(rate)
+        write_csv(target, trajectory_table(self.motion.robot, times, self.at(times)))
 
 
 def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:
