@@ -10,13 +10,14 @@ import numpy as np
 
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.checks import text, whole_number
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
-from ffsr_plan.trajectory.csv_tables import path_table, write_csv
-from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
+from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_csv
+from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits, refuse_limits_without_actuator
 from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
 
 if TYPE_CHECKING:
@@ -50,14 +51,15 @@ class Plan(PlanData):
 
         Args:
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
-            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]; without meaning
-                where the robot floats freely.
+            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]; as everything about
+                thrusters and the base's velocity, refused where the robot floats freely.
             joint_velocity: [rad/s or m/s]; the URDF's for joints not named.
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
             joint_jerk: [rad/s^3 or m/s^3].
             thruster_jerk: of the base origin [m/s^3].
-            turn_velocity: angular velocity of a base that wheels rotate [rad/s].
+            turn_velocity: angular velocity of a base that wheels rotate [rad/s]; refused without
+                wheels, as the next.
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
             velocity_jump: by how much thrusters may change the velocity of the base in one pulse
                 [m/s]; instead of resting at a corner of its path, the robot then passes it at the
@@ -76,6 +78,15 @@ class Plan(PlanData):
             joint_acceleration=joint_acceleration,
             joint_jerk=joint_jerk,
             joint_torque=joint_torque,
+            base_velocity=base_velocity,
+            thruster_acceleration=thruster_acceleration,
+            thruster_jerk=thruster_jerk,
+            turn_velocity=turn_velocity,
+            turn_acceleration=turn_acceleration,
+            velocity_jump=velocity_jump,
+        )
+        refuse_limits_without_actuator(
+            self.problem.mode,
             base_velocity=base_velocity,
             thruster_acceleration=thruster_acceleration,
             thruster_jerk=thruster_jerk,
@@ -141,7 +152,9 @@ class Plan(PlanData):
         rows = self.problem.lattice.divisions + 1
         if samples is not None:
             rows = whole_number("samples", samples, at_least=2, at_most=1_000_000)
-        target = checked_path("path", path)
+        target, columns = checked_path("path", path), 11 + self.problem.robot.nd
+        size = {"samples": rows, "columns": columns}
+        check_memory("samples", size, BYTES_PER_CELL, "fewer samples")
         write_csv(target, path_table(self.motion, np.linspace(0.0, 1.0, rows)))
 
     def write_html(self, path: str | Path, title: str = "") -> None:

@@ -74,7 +74,7 @@ class LatticePlanner(ABC):
             WorkerDied: a worker process ended without a result.
         """
         self.refuse(problem)
-        check_lattice(problem, self.bytes_per_edge)
+        check_lattice(problem, self.bytes_per_edge, getattr(self, "ants", 0))
         roadmap = Roadmap(problem)
         if request.colonies == 1:
             result = self.search(roadmap, rng, request.monitor())

@@ -24,10 +24,11 @@ from numpy.typing import ArrayLike
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.checks import finite_array, number
 from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.dynamics.inverse_dynamics import States, states
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.trajectory.csv_tables import trajectory_table, write_csv
+from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, trajectory_table, write_csv
 from ffsr_plan.trajectory.flight_limits import FlightLimits, check_limits
 from ffsr_plan.trajectory.straight_runs import StraightRuns, straight_runs
 from ffsr_plan.trajectory.time_law import TimeLaw, time_law
@@ -131,6 +132,8 @@ class TimedPlan:
             InvalidInput: a file that cannot be written, or a rate that is not possible.
         """
         target, times = checked_path("path", path), self.clock(rate)
+        size = {"rows": len(times), "columns": 30 + 5 * self.motion.robot.nd}
+        check_memory("rate", size, BYTES_PER_CELL, "a lower rate")
         write_csv(target, trajectory_table(self.motion.robot, times, self.at(times)))
 
 
