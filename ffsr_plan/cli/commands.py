@@ -1,11 +1,13 @@
 """Commands `ffsr-plan demo | plan | verify | view | export | gif | timed | robots | schema`.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
-plan that does not verify, 2 bad input, 130 interrupted: before there was a plan, or once more.
+plan that does not verify, 2 bad input, 70 an error of the program itself, 130 interrupted: before
+there was a plan, or once more.
 """
 
 from __future__ import annotations
 
+import io
 import signal
 import sys
 from pathlib import Path
@@ -226,21 +228,23 @@ def view(
 @app.command()
 def robots() -> None:
     """List the bundled robots, and the arms that `ffsr_plan.compose` can mount on a bus."""
-    from ffsr_plan.robots.summary import robot_summaries
-    from ffsr_plan.satellites.arms import arm_names
+    with errors_on_stderr():
+        from ffsr_plan.robots.summary import robot_summaries
+        from ffsr_plan.satellites.arms import arm_names
 
-    out_console.print(robot_table(robot_summaries()))
-    out_console.print(f"Arms for your own bus: {', '.join(arm_names())}")
+        out_console.print(robot_table(robot_summaries()))
+        out_console.print(f"Arms for your own bus: {', '.join(arm_names())}")
 
 
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors that complete and check TOML."""
-    import json
+    with errors_on_stderr():
+        import json
 
-    from ffsr_plan.scenario_files.scenario_schema import schema as scenario_schema
+        from ffsr_plan.scenario_files.scenario_schema import schema as scenario_schema
 
-    typer.echo(json.dumps(scenario_schema(), indent=2))
+        typer.echo(json.dumps(scenario_schema(), indent=2))
 
 
 def _report_unraisable(unraisable: Any) -> None:  # noqa: ANN401 - of a type without a name
@@ -251,6 +255,8 @@ def _report_unraisable(unraisable: Any) -> None:  # noqa: ANN401 - of a type wit
 
 def main() -> None:
     """Run a command of `ffsr-plan`, and exit."""
+    if isinstance(sys.stdout, io.TextIOWrapper):  # names of files may hold what it cannot encode
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         signal.signal(signal.SIGINT, raise_ctrl_c)
         sys.unraisablehook = _report_unraisable

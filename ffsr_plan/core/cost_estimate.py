@@ -6,14 +6,15 @@ within a factor of two or three of what is measured (tests/system/test_memory_es
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from ffsr_plan.core.errors import InvalidInput
 
 MOST_BYTES = 2e9
 """Memory [bytes] that one task may take."""
-MOST_STEPS = 1e9
-"""Repetitions of a small piece of work, such as a distance or a node, that one task may take."""
+MOST_SECONDS = 3600.0
+"""Computing time [s] that may be spent before a search begins, where a time limit counts."""
 _PREFIXES = ("", "k", "M", "G", "T", "P", "E")
 
 
@@ -29,29 +30,25 @@ def check_memory(
         advice: what would help, for the message.
         fixed: memory that something else takes at the same time [bytes].
     """
-    number = 1
-    for count in counts.values():
-        number *= int(count)
-    total = _as_float(number) * bytes_each + fixed
-    if total > MOST_BYTES:
+    total = _number(counts) * bytes_each + fixed
+    if not total <= MOST_BYTES:
         allowed = f"at most {_in_bytes(MOST_BYTES)} of memory: {advice}"
         raise InvalidInput(what, Estimate(f"{product(counts)}: {_in_bytes(total)}"), allowed)
 
 
-def check_work(what: str, counts: Mapping[str, int], advice: str) -> None:
-    """Raise `InvalidInput` if more than `MOST_STEPS` steps of work would be necessary.
+def check_work(what: str, counts: Mapping[str, int], seconds_each: float, advice: str) -> None:
+    """Raise `InvalidInput` if work that nothing can cut short would take more than `MOST_SECONDS`.
 
     Args:
         what: the field that decides the counts, for the message.
         counts: the counts by name, whose product is the number of steps.
+        seconds_each: computing time of a step [s].
         advice: what would help, for the message.
     """
-    number = 1
-    for count in counts.values():
-        number *= int(count)
-    if _as_float(number) > MOST_STEPS:
-        found = Estimate(f"{product(counts)}: {_as_float(number):.2g} steps")
-        raise InvalidInput(what, found, f"at most {MOST_STEPS:.0e} steps of work: {advice}")
+    total = _number(counts) * seconds_each
+    if not total <= MOST_SECONDS:
+        found = Estimate(f"{product(counts)}: {total / 3600.0:.2g} hours")
+        raise InvalidInput(what, found, f"at most {MOST_SECONDS / 3600.0:g} hour: {advice}")
 
 
 class Estimate(str):
@@ -68,15 +65,12 @@ def product(counts: Mapping[str, int]) -> str:
     return " x ".join(f"{name} {_shown(int(count))}" for name, count in counts.items())
 
 
+def _number(counts: Mapping[str, int]) -> float:
+    return math.prod(float(count) for count in counts.values())
+
+
 def _shown(count: int) -> str:
-    return str(count) if count < 10**12 else f"{_as_float(count):.3g}"
-
-
-def _as_float(number: int) -> float:
-    try:
-        return float(number)
-    except OverflowError:
-        return float("inf")
+    return str(count) if count < 10**12 else f"{float(count):.3g}"
 
 
 def _in_bytes(amount: float) -> str:

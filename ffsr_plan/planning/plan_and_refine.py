@@ -12,6 +12,7 @@ import numpy as np
 from ffsr_plan.core.checks import number, one_of, truth, whole_number
 from ffsr_plan.core.errors import AttitudeOutOfReach, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.memory_estimate import check_colonies
 from ffsr_plan.lattice.refinement import refined_path
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.plans.planner_registry import Planner, planner_of
@@ -19,6 +20,8 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
 from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
+
+_MOST_WORKERS = 256  # each is a process of some hundred megabytes
 
 
 def plan(
@@ -73,6 +76,7 @@ def plan(
     chosen.refuse(problem)
     rng, seed_number = _generator(seed)
     request = _request(refine, colonies, workers, time_limit, on_cycle)
+    check_colonies(problem, request.colonies)
     if chosen.exact and request.colonies > 1:
         raise InvalidInput("colonies", colonies, f"1 with {chosen.name}: it has one result")
     if chosen.exact and on_cycle is not None:
@@ -153,7 +157,7 @@ def _request(
     return SearchRequest(
         refine=None if refine is None else truth("refine", refine),
         colonies=count,
-        workers=whole_number("workers", workers, at_least=1),
+        workers=whole_number("workers", workers, at_least=1, at_most=_MOST_WORKERS),
         time_limit=seconds,
         on_cycle=on_cycle,
     )

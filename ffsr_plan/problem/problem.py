@@ -22,6 +22,7 @@ from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
 _LEAST, _LARGEST = 1e-9, 1e9  # of weights and units: no product of them overflows
+_FARTHEST_TRAVEL = 500.0  # [rad or m] of a joint; the reaction is worked out every 0.025
 _SAME = 1e-12  # metres or radians by which two positions or joint values may differ and be equal
 
 
@@ -100,8 +101,7 @@ class Problem:
     reach_attitude: Annotated[bool, Truth()] = False
 
     def __post_init__(self) -> None:
-        for axis in self.lattice.postures:
-            axis.displacement(self.robot, self.robot.joint_values(self.start))
+        self._check_travel()
         self._check_attitude()
         self._check_displacement()
 
@@ -179,6 +179,19 @@ class Problem:
         radians = np.append(joints[~slide], self.held_rotation) * self.rotation_weight
         total = float(np.sqrt(np.sum(metres**2) + np.sum(radians**2)))
         return total / self.lattice.divisions
+
+    def _check_travel(self) -> None:
+        """Raise `InvalidInput` for joints that travel so far that the reaction takes too long."""
+        allowed = f"at most {_FARTHEST_TRAVEL:g} rad or m"
+        for name, change in zip(self.robot.joint_names, self.joint_displacement, strict=True):
+            if abs(change) > _FARTHEST_TRAVEL:
+                raise InvalidInput(f"goal (joint {name}, travel)", float(change), allowed)
+        begin = self.robot.joint_values(self.start)
+        for k, axis in enumerate(self.lattice.postures):
+            way = float(np.max(np.abs(axis.displacement(self.robot, begin)), initial=0.0))
+            farthest = way * float(np.max(np.abs(axis.factors(np.array(axis.indices)))))
+            if farthest > _FARTHEST_TRAVEL:
+                raise InvalidInput(f"lattice postures.{k}, displacement", farthest, allowed)
 
     def _check_attitude(self) -> None:
         """Raise `InvalidInput` if `reach_attitude` is set and cannot be."""

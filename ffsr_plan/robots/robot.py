@@ -12,8 +12,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, ReadOnlyDict, frozen
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, equal_by_content, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
@@ -31,6 +32,7 @@ from ffsr_plan.robots.urdf.joints import RateLimits
 _HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
 
 
+@equal_by_content
 class Components(NamedTuple):
     """Parts of one configuration, or of N.
 
@@ -48,6 +50,8 @@ class Components(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class SpaceRobot:
     """A free-flying robot. Made by `load_robot` or `compose`; everything in it is read-only.
+
+    Two robots are equal if they were made from the same texts, meshes and options.
 
     A configuration `q` is Pinocchio's vector (nq,): base position (3) [m] and quaternion
     (x, y, z, w) of the base in the world, then the joints. `joint values` (nd,) are plain numbers,
@@ -137,6 +141,19 @@ class SpaceRobot:
         }
         for attribute, value in derived.items():
             object.__setattr__(self, attribute, value)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SpaceRobot):
+            return NotImplemented
+        return self is other or self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.urdf, self.srdf))
+
+    def _content(self) -> object:
+        """All that the robot was made from."""
+        made_from = (self.name, self.urdf, self.srdf, self.package_dirs, self.containers)
+        return content((*made_from, self.meshes))
 
     def __repr__(self) -> str:
         return (
@@ -368,9 +385,7 @@ class SpaceRobot:
         Raises:
             InvalidInput: not a `.urdf` path, or one that cannot be written.
         """
-        target = Path(path)
-        if target.suffix != ".urdf":
-            raise InvalidInput("path", str(path), "a path that ends in .urdf")
+        target = checked_path("path", path, ".urdf")
         files: dict[Path, str | bytes] = {target: self.urdf}
         if self.srdf:
             files[target.with_suffix(".srdf")] = self.srdf

@@ -11,7 +11,6 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.text_files import read_text

@@ -14,6 +14,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, content
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, truth
 from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.meshes import mesh_files
@@ -50,6 +51,9 @@ class Scene:
         Raises:
             InvalidInput: shapes that do not fit, not finite, or a radius <= 0, with its index.
         """
+        check_memory(
+            "scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
+        )
         c = finite_array("scene centers", centers, (-1, 3), FARTHEST)
         r = finite_array("scene radii", radii, (-1,))
         if len(c) != len(r):
@@ -192,3 +196,8 @@ class Scene:
 
     def __len__(self) -> int:
         return len(self.radii)
+
+
+def _rows(values: object) -> int:
+    rows = isinstance(values, (list, tuple)) or (isinstance(values, np.ndarray) and values.ndim)
+    return len(values) if rows else 0  # type: ignore[arg-type]

@@ -24,7 +24,7 @@ from ffsr_plan.core.text_files import read_text, write_text
 COLUMNS = ("x", "y", "z", "radius")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3}
 """Metres in each unit that a header may contain."""
-BYTES_PER_SPHERE = 1000
+BYTES_PER_SPHERE = 800
 """Memory [bytes] that a sphere takes at most while its file is read and its tree is built."""
 _LONGEST_LINE = 10_000
 _HEADER = re.compile(r"\s*(\w+)\s*(?:\[\s*(\w+)\s*\])?\s*")

@@ -11,9 +11,9 @@ import numpy as np
 
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.urdf.known_elements import check_element
-from ffsr_plan.robots.urdf.number_texts import attribute_numbers, attribute_text, numbers
+from ffsr_plan.robots.urdf.number_texts import attribute_text, numbers
 from ffsr_plan.robots.urdf.origins import add_origin, lengths
-from ffsr_plan.robots.urdf.xml_reading import placed, placed_errors, refused
+from ffsr_plan.robots.urdf.xml_reading import placed_errors, refused
 
 JOINTS = ("revolute", "continuous", "prismatic", "fixed")
 _AT_LEAST_ZERO = ("effort", "velocity")

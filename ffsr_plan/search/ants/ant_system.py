@@ -40,6 +40,7 @@ class AntSystem(LatticePlanner):
     """
 
     name: ClassVar[str] = "ant-system"
+    bytes_per_edge: ClassVar[float] = 40.0  # pheromone, roulettes, ants and what they lay
 
     ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
     cycles: Annotated[int, WholeNumber(at_least=1, at_most=1_000_000)] = 242

@@ -46,6 +46,7 @@ class MaxMinAntSystem(LatticePlanner):
     """
 
     name: ClassVar[str] = "max-min-ant-system"
+    bytes_per_edge: ClassVar[float] = 50.0  # those of the Ant System and visibility
 
     ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
     cycles: Annotated[int, WholeNumber(at_least=1, at_most=1_000_000)] = 242
