@@ -295,8 +295,9 @@ def _capsule_around(corners: Array, to_box: Array) -> _Container:
         low = high = 0.5 * (low + high)
     axis = rotation[:, longest]
     ends = rotation @ center + np.outer([low, high], axis)
-    upright = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis).matrix()
-    placement = pin.SE3(upright, 0.5 * (ends[0] + ends[1]))
+    # the other two columns of `rotation`, in cyclic order: a capsule's own axis is z
+    columns = rotation[:, [(longest + 1) % 3, (longest + 2) % 3, longest]]
+    placement = pin.SE3(columns, 0.5 * (ends[0] + ends[1]))
     # the distance from a convex solid is a convex function, so it is greatest at an end
     excess = radius + float(beyond(corners, ends).max())
     solid = coal.Capsule(radius, high - low)

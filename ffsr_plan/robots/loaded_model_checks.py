@@ -147,7 +147,7 @@ def _bodies(links: Sequence[Placed]) -> Iterator[tuple[float, Array, Array]]:
         if inertial is None or mass is None:
             continue
         turn, shift = transform(inertial)
-        xx, yy, zz, xy, xz, yz = moments(inertial.find("inertia"))
+        xx, xy, xz, yy, yz, zz = moments(inertial.find("inertia"))
         own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         axes = rotation @ turn
         yield float(str(mass.get("value"))), rotation @ shift + position, axes @ own @ axes.T

@@ -59,7 +59,12 @@ def arm_names() -> list[str]:
 
 
 def load_arm(
-    source: str | Path, locked: Mapping[str, float], srdf: str | Path | None = None
+    source: str | Path,
+    locked: Mapping[str, float],
+    srdf: str | Path | None = None,
+    *,
+    collision: str | None = None,
+    inertia: str = "exact",
 ) -> Arm:
     """Read an arm by name or from a `.urdf` file.
 
@@ -68,6 +73,9 @@ def load_arm(
         locked: joints to fix, by the arm's own names, at a value [rad, or m where prismatic].
             Joints that mimic a locked joint are fixed too, at the value that follows from it.
         srdf: path to an SRDF; an arm given by its name has its own, if there is one.
+        collision: see `load_robot`; by default `visual` for an arm given by its name, since some
+            of these have links with visual shapes only, and `collision` for a file.
+        inertia: see `load_robot`.
 
     Returns:
         The arm.
@@ -79,7 +87,9 @@ def load_arm(
     path, own, folders = find_arm(source)
     text = read_text("arm", path)
     where = f"arm {source}"
-    robot = read_urdf(text, where)
+    if collision is None:
+        collision = "collision" if path == Path(source) else "visual"
+    robot = read_urdf(text, where, collision=collision, inertia=inertia)
     mimics = _take_mimics(robot)
     _lock(robot, mimics, locked, where)
     check_movable(robot, where)

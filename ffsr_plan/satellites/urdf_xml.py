@@ -14,7 +14,7 @@ from ffsr_plan.satellites.bus import Bus, box_inertia
 BUS_LINK = "bus"
 """Name of the root link."""
 GOLD = "0.86 0.64 0.22 1"
-NAVY = "0.10 0.16 0.36 1"
+NAVY = "0.1 0.16 0.36 1"
 
 
 def bus_elements(bus: Bus) -> list[ElementTree.Element]:

@@ -2,8 +2,8 @@
 
 Pinocchio, the reader of shapes, the independent check, plan files, `SpaceRobot.save` and `compose`
 all receive this text, so that none of them can read a file differently from the others. It holds
-known elements only, numbers with all their digits, and orientations as roll, pitch and yaw. A second
-reading gives the same text.
+known elements only, numbers with all their digits, and orientations as roll, pitch and yaw. Reading
+it once more gives the same text.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ffsr_plan.robots.urdf.joints import canonical_joint
 from ffsr_plan.robots.urdf.known_elements import check_element
 from ffsr_plan.robots.urdf.link_tree import check_tree, without_world
 from ffsr_plan.robots.urdf.links import COLLISION, canonical_link, check_shapes, colours_of
-from ffsr_plan.robots.urdf.xml_reading import parse, refused
+from ffsr_plan.robots.urdf.xml_reading import is_comment, parse, refused
 
 _VERSIONS = ("1.0", "1.1", "1.2")
 
@@ -56,7 +56,7 @@ def read_urdf(
     robot = ElementTree.Element("robot", name=str(given.get("name")))
     for part in given:
         about = f"{where}, {part.tag} '{part.get('name')}'"
-        if part.tag is ElementTree.Comment:
+        if is_comment(part):
             robot.append(part)
         elif part.tag == "link":
             robot.append(canonical_link(part, about, colours, collision, inertia))

@@ -15,7 +15,7 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.urdf.known_elements import MOMENTS, check_element
 from ffsr_plan.robots.urdf.number_texts import attribute_text, numbers, words
 from ffsr_plan.robots.urdf.origins import add_origin
-from ffsr_plan.robots.urdf.xml_reading import placed_errors, refused
+from ffsr_plan.robots.urdf.xml_reading import is_comment, placed_errors, refused
 
 HEAVIEST = 1e9
 """Limit [kg] of the mass of a body; beside heavier ones, light bodies are lost in rounding."""
@@ -32,7 +32,7 @@ class Balanced(NamedTuple):
 
     Attributes:
         link: name of the link.
-        given: ixx, iyy, izz, ixy, ixz, iyz of the file [kg m^2].
+        given: ixx, ixy, ixz, iyy, iyz, izz of the file [kg m^2].
         taken: the same of the tensor taken, about the same point [kg m^2].
     """
 
@@ -101,7 +101,7 @@ def tensor_fault(
     the limit.
 
     Args:
-        given: ixx, iyy, izz, ixy, ixz, iyz [kg m^2].
+        given: ixx, ixy, ixz, iyy, iyz, izz [kg m^2].
         texts: the same as they are printed.
         mass: of the body [kg].
 
@@ -117,7 +117,7 @@ def tensor_fault(
 
 
 def principal_moments(given: Sequence[float]) -> list[float]:
-    """Principal moments of ixx, iyy, izz, ixy, ixz, iyz, in ascending order."""
+    """Principal moments of ixx, ixy, ixz, iyy, iyz, izz, in ascending order."""
     return cast("list[float]", np.linalg.eigvalsh(_tensor(given)).tolist())
 
 
@@ -128,13 +128,13 @@ def balanced(given: Sequence[float]) -> list[float]:
     those that are become zero.
 
     Args:
-        given: ixx, iyy, izz, ixy, ixz, iyz [kg m^2].
+        given: ixx, ixy, ixz, iyy, iyz, izz [kg m^2].
     """
     tensor = _tensor(given)
     values, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
     moments = (axes * np.maximum(values, 0.0)) @ axes.T
     lifted = np.trace(moments) * np.eye(3) - moments
-    return [float(lifted[i, j]) for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
+    return [float(lifted[i, j]) for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))]
 
 
 def balanced_links(robot: ElementTree.Element) -> tuple[Balanced, ...]:
@@ -149,7 +149,7 @@ def balanced_links(robot: ElementTree.Element) -> tuple[Balanced, ...]:
 
 
 def moments(inertia: ElementTree.Element | None) -> tuple[float, ...]:
-    """ixx, iyy, izz, ixy, ixz, iyz of a canonical `<inertia>`; zeros without one."""
+    """ixx, ixy, ixz, iyy, iyz, izz of a canonical `<inertia>`; zeros without one."""
     if inertia is None:
         return (0.0,) * len(MOMENTS)
     return tuple(float(str(inertia.get(key))) for key in MOMENTS)
@@ -157,7 +157,7 @@ def moments(inertia: ElementTree.Element | None) -> tuple[float, ...]:
 
 def _record(comment: ElementTree.Element) -> tuple[float, ...] | None:
     """The tensor given, of a comment that `add_inertial` wrote; None for other elements."""
-    if comment.tag is not ElementTree.Comment:
+    if not is_comment(comment):
         return None
     match = _BALANCED.fullmatch(comment.text or "")
     try:
@@ -171,7 +171,7 @@ def _comment(text: str) -> ElementTree.Element:
 
 
 def _tensor(given: Sequence[float]) -> Array:
-    xx, yy, zz, xy, xz, yz = given
+    xx, xy, xz, yy, yz, zz = given
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 

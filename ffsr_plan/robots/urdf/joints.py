@@ -13,7 +13,7 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.urdf.known_elements import check_element
 from ffsr_plan.robots.urdf.number_texts import attribute_text, numbers
 from ffsr_plan.robots.urdf.origins import add_origin, lengths
-from ffsr_plan.robots.urdf.xml_reading import placed_errors, refused
+from ffsr_plan.robots.urdf.xml_reading import is_comment, placed_errors, refused
 
 JOINTS = ("revolute", "continuous", "prismatic", "fixed")
 _AT_LEAST_ZERO = ("effort", "velocity")
@@ -56,12 +56,13 @@ def canonical_joint(joint: ElementTree.Element, where: str) -> ElementTree.Eleme
             raise refused(joint, f"{where}, {key}", None, "a link")
         check_element(end, f"{where}, {key}")
         ElementTree.SubElement(copy, key, link=str(end.get("link")))
+    limit = _limit(joint, kind, where)
     if kind != "fixed":
         _add_axis(copy, joint, where)
-        _add_limit(copy, joint, kind, where)
+        copy.extend([] if limit is None else [limit])
         _add_mimic(copy, joint, where)
         _add_dynamics(copy, joint, where)
-    copy.extend(part for part in joint if part.tag is ElementTree.Comment)
+    copy.extend(part for part in joint if is_comment(part))
     return copy
 
 
@@ -120,18 +121,17 @@ def _add_axis(copy: ElementTree.Element, joint: ElementTree.Element, where: str)
     ElementTree.SubElement(copy, "axis", xyz=attribute_text(values))
 
 
-def _add_limit(
-    copy: ElementTree.Element, joint: ElementTree.Element, kind: str, where: str
-) -> None:
+def _limit(joint: ElementTree.Element, kind: str, where: str) -> ElementTree.Element | None:
+    """The canonical `<limit>` of a joint; None if it has none."""
     limit, bounded = joint.find("limit"), kind in ("revolute", "prismatic")
     if limit is None:
         if bounded:
             allowed = "a <limit> with lower, upper, effort and velocity"
             raise refused(joint, f"{where}, limit", None, allowed)
-        return
+        return None
     about = f"{where}, limit"
     check_element(limit, about)
-    kept = ElementTree.SubElement(copy, "limit")
+    kept = ElementTree.Element("limit")
     with placed_errors(limit):
         if bounded:
             check = lengths if kind == "prismatic" else numbers
@@ -146,6 +146,7 @@ def _add_limit(
                 least = "at least 0" if key in _AT_LEAST_ZERO else "greater than 0"
                 raise InvalidInput(f"{about}, {key}", value, least)
             kept.set(key, attribute_text(value))
+    return kept
 
 
 def _add_mimic(copy: ElementTree.Element, joint: ElementTree.Element, where: str) -> None:

@@ -38,7 +38,7 @@ SHAPES: dict[str, dict[str, int]] = {
     "mesh": {},
 }
 """Positive sizes of each shape: how many numbers each attribute contains."""
-MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _ONCE_IN_A_JOINT = (
     "origin", "parent", "child", "axis", "limit", "mimic", "dynamics", "calibration",
     "safety_controller",
@@ -48,7 +48,7 @@ ELEMENTS = {
         ("version",),
         dict.fromkeys(("link", "joint", "material", "transmission", "gazebo"), _MANY),
     ),
-    "link": Known(("type",), {"inertial": 1, "collision": _MANY, "visual": _MANY}),
+    "link": Known(("type",), {"origin": 1, "inertial": 1, "collision": _MANY, "visual": _MANY}),
     "inertial": Known((), {"origin": 1, "mass": 1, "inertia": 1}),
     "mass": Known(("value",)),
     "inertia": Known(MOMENTS),

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import deepcopy
 from xml.etree import ElementTree
 
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.urdf.inertias import add_inertial
 from ffsr_plan.robots.urdf.known_elements import SHAPES, check_element
-from ffsr_plan.robots.urdf.number_texts import attribute_text, numbers
+from ffsr_plan.robots.urdf.number_texts import attribute_numbers, attribute_text, numbers
 from ffsr_plan.robots.urdf.origins import add_origin, lengths
-from ffsr_plan.robots.urdf.xml_reading import placed_errors, refused
+from ffsr_plan.robots.urdf.xml_reading import is_comment, placed_errors, refused
 
 COLLISION = ("collision", "visual", "ignore")
 """What becomes of a link with `<visual>` shapes and no `<collision>`: it is refused, its visual
@@ -37,17 +38,18 @@ def canonical_link(
         InvalidInput: names the element, the value and what is allowed.
     """
     check_element(link, where)
+    _refuse_origin(link, where)
     copy = ElementTree.Element("link", name=str(link.get("name")))
     add_inertial(copy, link, where, inertia)
     for part in link:
-        if part.tag is ElementTree.Comment:
+        if is_comment(part):
             copy.append(part)
         elif part.tag in ("visual", "collision"):
             copy.append(_shape(part, f"{where}, {part.tag}", colours))
     if collision == "visual" and copy.find("collision") is None:
         for visual in copy.findall("visual"):
             shape = ElementTree.SubElement(copy, "collision")
-            shape.extend(part for part in visual if part.tag in ("origin", "geometry"))
+            shape.extend(deepcopy(part) for part in visual if part.tag in ("origin", "geometry"))
     return copy
 
 
@@ -102,6 +104,16 @@ def colours_of(robot: ElementTree.Element, where: str) -> dict[str, str]:
         if colour is not None:
             colours[name] = colour
     return colours
+
+
+def _refuse_origin(link: ElementTree.Element, where: str) -> None:
+    """Refuse an `<origin>` of a link itself, which readers ignore, unless it says nothing."""
+    copy = ElementTree.Element("link")
+    add_origin(copy, link, where)
+    for origin in copy:
+        if any(attribute_numbers(origin, key).any() for key in ("xyz", "rpy")):
+            allowed = "an <origin> in <inertial>, <visual>, <collision> or a joint"
+            raise refused(link, where, "<origin>", allowed)
 
 
 def _shape(

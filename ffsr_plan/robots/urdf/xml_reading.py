@@ -33,6 +33,11 @@ class PlacedElement(ElementTree.Element):
     column = 0
 
 
+def is_comment(element: ElementTree.Element) -> bool:
+    """Whether an element is a comment."""
+    return not isinstance(element.tag, str)
+
+
 def refused(element: ElementTree.Element, where: str, value: object, allowed: str) -> InvalidInput:
     """The error for an element's fault, with the element's line and column if it has them.
 
