@@ -238,8 +238,8 @@ class _Sweep:
         found, outer = self.found, items.part < self.distances.shapes
         bound = 0.5 * (items.at_first + items.at_last - travel)
         nearest = found.clearance.value if found.clearance is not None else np.inf
-        claim = self._claim - CONFIRMED if self._claim <= nearest + ROUNDING else 0.0
-        enough = np.where(outer & np.isfinite(claim), np.maximum(claim, 0.0), 0.0)
+        held = nearest >= self._claim - ROUNDING  # otherwise there is nothing to confirm
+        enough = np.where(outer, max(self._claim - CONFIRMED, 0.0) if held else 0.0, 0.0)
         touching = np.minimum(items.at_first, items.at_last) <= 0.0
         is_open = ~((bound > 0.0) & (bound >= enough)) & ~touching
         ends_here = is_open & (travel - ROUNDING <= FINEST)
