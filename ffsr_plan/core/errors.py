@@ -300,6 +300,6 @@ def _named(obstacle: int | str | None) -> str:
 
 
 def _shorten(value: object) -> str:
-    text = repr(value)
+    text = " ".join(repr(value).split())  # arrays are shown in lines
     most = _MOST_CHARACTERS_OF_A_VALUE
     return text if len(text) <= most else f"{text[: most - 3]}..."

@@ -180,9 +180,11 @@ def _same_replacement(stated: dict[str, Any], expected: dict[str, Any]) -> bool:
 def _motion(what: str, table: PlanTable, problem: Problem) -> Motion:
     """The motion; the configurations beside it are for other readers, and have to agree with it."""
     robot, values = problem.robot, table.motion.joint_values
-    shape = (len(table.motion.positions), robot.nd)
     if values is not None:
-        values = finite_array(f"{what}, motion.joint_values", values, shape)
+        shape, name = (len(table.motion.positions), robot.nd), f"{what}, motion.joint_values"
+        if values.shape != shape:
+            raise InvalidInput(name, values.shape, f"the shape {shape}")
+        values = finite_array(name, values, shape)
     positions = finite_array(f"{what}, motion.positions", table.motion.positions, (-1, 3))
     motion = _within(
         what,

@@ -111,7 +111,8 @@ def verify(
     residual = None if held else momentum_residual(plan, bodies)
     wheel_error = wheel_momentum_error(plan, bodies) if held else None
     drift = swept.drift if problem.mode.floats else None
-    costs, path = recompute(plan, bodies, swept.nodes), LatticePath(plan)
+    with np.errstate(over="ignore", invalid="ignore"):  # absurd weights give infinite lengths
+        costs, path = recompute(plan, bodies, swept.nodes), LatticePath(plan)
     problems = (
         *_bad_input(plan, bodies),
         *_collisions(plan, swept),
