@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -96,15 +97,23 @@ class Plan(PlanData):
         )
         return timed(self.motion, limits, self.certificate.least_clearance)
 
-    def verify(self, samples: int = 2000) -> Report:
-        """Check the plan again, densely and by other code than the planner's; see `verify`.
+    def verify(
+        self, samples: int | None = None, on_progress: Callable[[float], object] | None = None
+    ) -> Report:
+        """Check the plan again, all along and by other code than the planner's; see `Report`.
 
         Args:
-            samples: distance checks per edge.
-        """
-        from ffsr_plan.verification.verify import verify
+            samples: least number of equal time steps on each edge, 50 by default. Where links are
+                closer to obstacles or to each other than they can move in such a step, it is halved
+                until nothing can be hidden between two samples.
+            on_progress: called with the share of the motion that is done, from 0 to 1.
 
-        return verify(self, samples)
+        Raises:
+            InvalidInput: `samples` is not a positive whole number, or too large.
+        """
+        from ffsr_plan.verification.verify import SAMPLES, verify
+
+        return verify(self, SAMPLES if samples is None else samples, on_progress)
 
     def save(self, path: str | Path) -> None:
         """Write everything to a JSON file; `Plan.load` gives the same plan back, bit for bit."""
