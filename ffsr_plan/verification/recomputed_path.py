@@ -116,9 +116,7 @@ class LatticePath:
             samples = samples._replace(base_places=self.positions - problem.start[:3])
             distances = SampledDistances(bodies, problem.scene, problem.start[:3])
             nodes = distances.clearances(samples)
-        value = objective_of(
-            problem, length_of(problem, self.positions, self.joint_values), nodes
-        )
+        value = objective_of(problem, length_of(problem, self.positions, self.joint_values), nodes)
         return float(nodes.min()), value, tolerances(problem, bodies, nodes, value)[1]
 
     def _least(self) -> float:

@@ -83,9 +83,7 @@ class Report:
     largest_gap: float
 
 
-def verify(
-    plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | None = None
-) -> Report:
+def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | None = None) -> Report:
     """Verify a plan from its configurations and its motion alone.
 
     Args:

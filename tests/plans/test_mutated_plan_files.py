@@ -40,7 +40,9 @@ def truth_of(plan):
     shapes = pin.GeometryModel(robot.collision_model)
     for center, radius in zip(problem.scene.centers, problem.scene.radii, strict=True):
         k = shapes.addGeometryObject(
-            pin.GeometryObject(f"o{shapes.ngeoms}", 0, pin.SE3(np.eye(3), center), coal.Sphere(radius))
+            pin.GeometryObject(
+                f"o{shapes.ngeoms}", 0, pin.SE3(np.eye(3), center), coal.Sphere(radius)
+            )
         )
         for link in range(len(robot.collision_model.geometryObjects)):
             shapes.addCollisionPair(pin.CollisionPair(link, k))
@@ -73,7 +75,10 @@ def test_the_originals_verify(originals):
 def test_a_changed_plan_is_refused_not_verified_or_true(originals, tmp_path, which):
     original = originals[which]
     data, path = original.to_dict(), tmp_path / "plan.json"
-    rng, outcomes = np.random.default_rng(which), {"refused": 0, "not ok": 0, "stated only": 0, "true": 0}
+    rng, outcomes = (
+        np.random.default_rng(which),
+        {"refused": 0, "not ok": 0, "stated only": 0, "true": 0},
+    )
     for _ in range(MUTATIONS):
         changed, place, how = mutated(data, rng)
         if changed == data:
