@@ -8,6 +8,7 @@ node lies on the rim of its offsets.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -48,7 +49,12 @@ class RefinedPath(NamedTuple):
 
 
 def refined_path(
-    lattice: LayeredLattice, prover: Prover, offsets: Array, clearances: Array, objective: float
+    lattice: LayeredLattice,
+    prover: Prover,
+    offsets: Array,
+    clearances: Array,
+    objective: float,
+    stop_requested: Callable[[], bool] = bool,
 ) -> RefinedPath | None:
     """Move a proven path off the lattice to where F is lower; None where F does not fall.
 
@@ -60,13 +66,14 @@ def refined_path(
         offsets: (m + 1, 3) of the path [m].
         clearances: (m + 1,) at its nodes [m].
         objective: F of the path [length units].
+        stop_requested: asked between rounds; whether to end with what has been reached.
     """
     if not lattice.problem.lattice.axes:
         return None  # one node a layer: there is no offset to change
     descent = _Descent(lattice, prover, offsets, clearances, objective)
     for level in range(1, _LEVELS + 1):
         for _ in range(_ROUNDS):
-            if not descent.improve(_FINEST // 2**level):
+            if stop_requested() or not descent.improve(_FINEST // 2**level):
                 break
     if not descent.objective < objective:
         return None

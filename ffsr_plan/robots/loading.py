@@ -12,6 +12,7 @@ import pinocchio as pin
 from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import one_of
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, UncheckedLinks, unknown_name
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.collision_shapes import CONTAINERS, Containers, collision_geometry
@@ -75,21 +76,20 @@ def load_robot(
     Warns:
         UncheckedLinks: links with a mass and no shape at all.
     """
-    if not isinstance(source, (str, Path)):
-        raise InvalidInput("robot", source, "a name or a path")
+    given = checked_path("robot", source)
     path = bundled_files.find("urdf", str(source), ".urdf")
     if path is not None and srdf is None:
         srdf = bundled_files.find("urdf", str(source), ".srdf")
     if path is None:
-        path = Path(source)
+        path = given
         if path.suffix != ".urdf":
             raise unknown_name("robot", str(source), [*robot_names(), "or a path to a .urdf file"])
         if not path.is_file():
             raise InvalidInput("robot", str(source), "a bundled robot or an existing .urdf file")
-    if srdf is not None and not isinstance(srdf, (str, Path)):
-        raise InvalidInput("srdf", srdf, "a path")
-    folders = [*(str(Path(p)) for p in package_dirs), str(path.parent)]
-    srdf_text = "" if srdf is None else read_text("srdf", Path(srdf))
+    if isinstance(package_dirs, (str, Path)) or not isinstance(package_dirs, Sequence):
+        raise InvalidInput("package_dirs", package_dirs, "a list of paths")
+    folders = [*(str(checked_path("package_dirs", p)) for p in package_dirs), str(path.parent)]
+    srdf_text = "" if srdf is None else read_text("srdf", checked_path("srdf", srdf))
     if srdf is not None and not srdf_text.strip():
         raise InvalidInput("srdf", str(srdf), "a file that is not empty")
     robot = robot_from_urdf(

@@ -12,13 +12,13 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternion
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, equal_by_content, frozen
+from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
-from ffsr_plan.core.read_only_dict import ReadOnlyDict
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
-from ffsr_plan.core.text_files import write_text
+from ffsr_plan.core.text_files import write_files
 from ffsr_plan.robots.collision_shapes import (
     Containers,
     Replacement,
@@ -29,7 +29,10 @@ from ffsr_plan.robots.srdf import named_postures
 from ffsr_plan.robots.urdf.inertias import Balanced
 from ffsr_plan.robots.urdf.joints import RateLimits
 
+_HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
 
+
+@equal_by_content
 class Components(NamedTuple):
     """Parts of one configuration, or of N.
 
@@ -47,6 +50,8 @@ class Components(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class SpaceRobot:
     """A free-flying robot. Made by `load_robot` or `compose`; everything in it is read-only.
+
+    Two robots are equal if they were made from the same texts, meshes and options.
 
     A configuration `q` is Pinocchio's vector (nq,): base position (3) [m] and quaternion
     (x, y, z, w) of the base in the world, then the joints. `joint values` (nd,) are plain numbers,
@@ -136,6 +141,19 @@ class SpaceRobot:
         }
         for attribute, value in derived.items():
             object.__setattr__(self, attribute, value)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SpaceRobot):
+            return NotImplemented
+        return self is other or self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.urdf, self.srdf))
+
+    def _content(self) -> object:
+        """All that the robot was made from."""
+        made_from = (self.name, self.urdf, self.srdf, self.package_dirs, self.containers)
+        return content((*made_from, self.meshes))
 
     def __repr__(self) -> str:
         return (
@@ -301,7 +319,8 @@ class SpaceRobot:
     def joint_change(self, begin: Array, end: Array) -> Array:
         """Change of the joint values from one configuration to another.
 
-        A continuous joint takes the shorter direction; a rotation by pi is positive.
+        A continuous joint takes the shorter direction; half a turn is positive, also if rounding
+        makes it 1e-9 rad more or less.
 
         Args:
             begin: (nq,) first configuration.
@@ -312,6 +331,7 @@ class SpaceRobot:
         """
         change = self.joint_values(end) - self.joint_values(begin)
         wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
+        wrapped = np.where(wrapped < -np.pi + _HALF_TURN_BAND, wrapped + 2.0 * np.pi, wrapped)
         return np.where(np.isinf(self.upper), wrapped, change)
 
     def check_configuration(self, what: str, q: ArrayLike) -> Array:
@@ -322,7 +342,8 @@ class SpaceRobot:
             q: (nq,) configuration.
 
         Returns:
-            (nq,) read-only copy, its quaternion normalised.
+            (nq,) read-only copy; quaternion, and cosine and sine, normalised. What has been
+            checked once is returned bit for bit.
 
         Raises:
             InvalidInput: wrong length, not finite, a quaternion (or cosine and sine of a continuous
@@ -332,10 +353,13 @@ class SpaceRobot:
         finite_array(f"{what} (base position)", checked[:3], (3,), FARTHEST)
         checked[3:7] = unit_quaternion(f"{what} (base quaternion)", checked[3:7])
         for name, (i, nq) in zip(self.joint_names, self._slots, strict=True):
-            if nq == 2 and abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
+            if nq == 1:
+                continue
+            if abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
                 raise InvalidInput(
                     f"{what} (joint {name})", checked[i : i + 2].tolist(), "cosine and sine"
                 )
+            checked[i : i + 2] = normalised(checked[i : i + 2])
         values = self.joint_values(checked)
         self.check_limits(what, values)
         return frozen(checked)
@@ -361,12 +385,11 @@ class SpaceRobot:
         Raises:
             InvalidInput: not a `.urdf` path, or one that cannot be written.
         """
-        target = Path(path)
-        if target.suffix != ".urdf":
-            raise InvalidInput("path", str(path), "a path that ends in .urdf")
-        write_text("path", target, self.urdf)
+        target = checked_path("path", path, ".urdf")
+        files: dict[Path, str | bytes] = {target: self.urdf}
         if self.srdf:
-            write_text("path", target.with_suffix(".srdf"), self.srdf)
+            files[target.with_suffix(".srdf")] = self.srdf
+        write_files("path", files)
 
     def link_of(self, geometry: pin.GeometryObject) -> str:
         """Name of the URDF link that a collision or visual shape belongs to."""

@@ -42,7 +42,7 @@ class Inertia(Rule):
         return _inertia(what, value)  # type: ignore[arg-type]
 
 
-@settings(eq=False, of="a panel")
+@settings(of="a panel")
 class Panel:
     """A solar panel, or anything else box-shaped that is fixed to the bus.
 
@@ -64,7 +64,7 @@ class Panel:
     name: Annotated[str, Text("a name")] = ""
 
 
-@settings(eq=False, of="the bus")
+@settings(of="the bus")
 class Bus:
     """A box about the origin of the bus frame, which is the robot's base frame.
 

@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ffsr_plan.core.checks import number, one_of
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, OneOf, Rule, Text, Vector
 from ffsr_plan.core.settings import Given, setting, settings
@@ -54,12 +55,15 @@ class PathOrName(Rule):
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
         """See `Rule.check`."""
-        if isinstance(value, (str, Path)) or (self.optional and value is None):
+        if value is None and self.optional:
             return value
-        raise InvalidInput(what, value, self.meaning)
+        if not isinstance(value, (str, Path)):
+            raise InvalidInput(what, value, self.meaning)
+        checked_path(what, value)
+        return value
 
 
-@settings(eq=False, of="a mount")
+@settings(of="a mount")
 class Mount:
     """An arm and its place on the bus.
 

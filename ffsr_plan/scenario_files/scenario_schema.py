@@ -24,7 +24,7 @@ from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scenario_files.obstacle_tables import (
     BeltTable,
     CloudTable,
-    FilePath,
+    FileName,
     GateTable,
     Obstacle,
     ScatterTable,
@@ -55,8 +55,8 @@ class RobotTable:
 
     urdf: Annotated[str, Text("a name or a path", empty=False)]
     mode: Annotated[Mode, ModeName()] = Mode.FREE_FLYING
-    package_dirs: tuple[FilePath, ...] = ()
-    srdf: FilePath | None = None
+    package_dirs: tuple[FileName, ...] = ()
+    srdf: FileName | None = None
     meshes: Container = "hull"
     cylinders: Container = "hull"
 
@@ -71,7 +71,7 @@ class RobotTable:
         )
 
 
-@settings(eq=False)
+@settings
 class StartTable:
     """The table `[start]`.
 
@@ -94,7 +94,7 @@ class StartTable:
         return robot.configuration(self.position, self.attitude, joints)
 
 
-@settings(eq=False)
+@settings
 class EndEffectorTable:
     """The table `end_effector` of `[goal]`.
 
@@ -111,7 +111,7 @@ class EndEffectorTable:
     seed: Annotated[int, WholeNumber()] = 0
 
 
-@settings(eq=False)
+@settings
 class GoalTable:
     """The table `[goal]`.
 
@@ -194,7 +194,7 @@ else:
     )
 
 
-@settings(eq=False)
+@settings
 class ScenarioFile:
     """A scenario file.
 

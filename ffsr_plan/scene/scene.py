@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, content
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, truth
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.meshes import mesh_files
@@ -24,6 +26,8 @@ from ffsr_plan.scene.sphere_tree import SphereTree, sphere_tree
 @dataclass(frozen=True, eq=False, init=False)
 class Scene:
     """Sphere obstacles. `scene + other` holds the spheres of both, those of `scene` first.
+
+    Two scenes are equal if they hold the same spheres in the same order.
 
     Attributes:
         centers: (N, 3) centres in the world [m].
@@ -47,8 +51,9 @@ class Scene:
         Raises:
             InvalidInput: shapes that do not fit, not finite, or a radius <= 0, with its index.
         """
-        if np.size(centers) == 0:  # accept [] for "no obstacle"
-            centers = np.zeros((0, 3))
+        check_memory(
+            "scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
+        )
         c = finite_array("scene centers", centers, (-1, 3), FARTHEST)
         r = finite_array("scene radii", radii, (-1,))
         if len(c) != len(r):
@@ -122,7 +127,8 @@ class Scene:
             InvalidInput: a mesh that cannot be read, is not closed, or is too large for the excess.
         """
         if isinstance(mesh, (str, Path)):
-            corners = mesh_files.surface(str(Path(mesh).absolute()), [], "mesh")
+            file = checked_path("mesh", mesh)
+            corners = mesh_files.surface(str(file.absolute()), [], "mesh")
         elif hasattr(mesh, "triangles"):
             corners = finite_array("mesh, triangles", mesh.triangles, (-1, 3, 3))
         else:
@@ -161,6 +167,17 @@ class Scene:
             max(self.excess, other.excess),
         )
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> object:
+        return content((self.centers, self.radii, self.excess))
+
     def __repr__(self) -> str:
         extent = f", {self._extent()}" if len(self) else ""
         return f"Scene({counted(len(self), 'sphere')}{extent})"
@@ -179,3 +196,8 @@ class Scene:
 
     def __len__(self) -> int:
         return len(self.radii)
+
+
+def _rows(values: object) -> int:
+    rows = isinstance(values, (list, tuple)) or (isinstance(values, np.ndarray) and values.ndim)
+    return len(values) if rows else 0  # type: ignore[arg-type]

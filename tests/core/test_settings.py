@@ -51,7 +51,7 @@ class Pause:
     seconds: Annotated[float, Number(at_least=0.0)]
 
 
-@settings(eq=False, of="the walk")
+@settings(of="the walk")
 class Walk:
     """A walk."""
 
