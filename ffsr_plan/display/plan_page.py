@@ -91,11 +91,13 @@ def frames_per_edge(plan: PlanData) -> int:
 def _summary(plan: PlanData) -> str:
     """Planner and figures of merit in one line."""
     gap = "lattice gap" if plan.optimum_is_exact else "gap to a lower bound"
+    unchecked = plan.problem.robot.unchecked_links
     clearance = f"proven clearance {proven(plan.certificate.least_clearance)}"
     return (
         f"{plan.planner.name}: L {plan.length:.3f} m, F {plan.objective:.2f}, "
         f"δ {plan.problem.delta:g}, {gap} {plan.gap:.2%}, "
         + (clearance if len(plan.problem.scene) else "no obstacles")
+        + (f", links not checked: {', '.join(unchecked)}" if unchecked else "")
     )
 
 

@@ -150,6 +150,7 @@ def _robot(what: str, table: RobotTable) -> SpaceRobot:
             srdf=table.srdf,
             containers=Containers(table.containers.meshes, table.containers.cylinders),
             meshes=table.meshes,
+            collision="ignore",  # the URDF of a plan was accepted when the plan was made
         ),
     )
     remade = robot_table(robot)

@@ -44,7 +44,10 @@ def _clearance_rows(plan: PlanData) -> list[tuple[str, str]]:
     motion = f"at least {proven(plan.certificate.least_clearance)}"
     if not len(plan.problem.scene):
         nodes = motion = "no obstacles"
-    return [("clearance at nodes", nodes), ("proven along the motion", motion)]
+    rows = [("clearance at nodes", nodes), ("proven along the motion", motion)]
+    if unchecked := plan.problem.robot.unchecked_links:
+        rows.append(("not checked, no shape", ", ".join(unchecked)))
+    return rows
 
 
 def _attitude_rows(plan: PlanData, duration: float | None) -> list[tuple[str, str]]:

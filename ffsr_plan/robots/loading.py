@@ -89,11 +89,11 @@ def load_robot(
     if isinstance(package_dirs, (str, Path)) or not isinstance(package_dirs, Sequence):
         raise InvalidInput("package_dirs", package_dirs, "a list of paths")
     folders = [*(str(checked_path("package_dirs", p)) for p in package_dirs), str(path.parent)]
-    srdf_text = "" if srdf is None else read_text("srdf", checked_path("srdf", srdf))
+    srdf_text = "" if srdf is None else read_text("srdf", checked_path("srdf", srdf), "utf-8-sig")
     if srdf is not None and not srdf_text.strip():
         raise InvalidInput("srdf", str(srdf), "a file that is not empty")
     robot = robot_from_urdf(
-        read_text("robot", path), path.stem, folders,
+        read_text("robot", path, "utf-8-sig"), path.stem, folders,
         srdf=srdf_text,
         containers=Containers(meshes, cylinders),
         collision=collision,

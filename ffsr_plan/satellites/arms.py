@@ -85,7 +85,7 @@ def load_arm(
             value outside the joint's limits, or a joint that mimics one that is not locked.
     """
     path, own, folders = find_arm(source)
-    text = read_text("arm", path)
+    text = read_text("arm", path, "utf-8-sig")
     where = f"arm {source}"
     if collision is None:
         collision = "collision" if path == Path(source) else "visual"
@@ -97,7 +97,7 @@ def load_arm(
     names = [str(link.get("name")) for link in robot.findall("link")]
     root = next(name for name in names if name not in children)
     srdf_path = own if srdf is None else Path(srdf)
-    srdf_text = "" if srdf_path is None else read_text("srdf", srdf_path)
+    srdf_text = "" if srdf_path is None else read_text("srdf", srdf_path, "utf-8-sig")
     pairs = disabled_pairs(srdf_text, f"{where}, SRDF", names)
     return Arm(robot, root, folders, where, pairs)
 

@@ -48,6 +48,8 @@ class Report:
         ok: whether there are no problems.
         problems: one sentence for each violated condition.
         not_checked: one sentence for each part of the plan that was not checked.
+        unchecked: links that have a mass or a visual shape but no collision shape: nothing is known
+            about obstacles in their way.
         least_clearance: least link-to-sphere distance over all samples [m].
         clearance_bound: lower bound on that distance all along the motion, between the samples too,
             from bounds on the travel of all points [m].
@@ -70,6 +72,7 @@ class Report:
     ok: bool
     problems: tuple[str, ...]
     not_checked: tuple[str, ...]
+    unchecked: tuple[str, ...]
     least_clearance: float
     clearance_bound: float
     least_self_separation: float
@@ -130,7 +133,8 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     return Report(
         ok=not problems,
         problems=problems,
-        not_checked=tuple(_not_checked(plan, path)),
+        not_checked=tuple(_not_checked(plan, path, bodies)),
+        unchecked=bodies.unchecked,
         least_clearance=least,
         clearance_bound=float(swept.clearance_bound),
         least_self_separation=gap,
@@ -145,7 +149,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     )
 
 
-def _not_checked(plan: PlanData, path: LatticePath) -> Iterator[str]:
+def _not_checked(plan: PlanData, path: LatticePath, bodies: Bodies) -> Iterator[str]:
     """What the verification takes as the plan has it."""
     robot = plan.problem.robot
     if plan.optimum_is_exact:
@@ -162,8 +166,8 @@ def _not_checked(plan: PlanData, path: LatticePath) -> Iterator[str]:
     if robot.disabled_pairs:
         pairs = ", ".join(f"{a} and {b}" for a, b in robot.disabled_pairs)
         yield f"pairs of links that the SRDF exempts: {pairs}"
-    if unchecked := getattr(robot, "unchecked_links", ()):
-        yield f"links without a shape for collisions: {', '.join(unchecked)}"
+    if bodies.unchecked:
+        yield f"links without a shape for collisions: {', '.join(bodies.unchecked)}"
 
 
 def _bad_input(plan: PlanData, bodies: Bodies) -> list[str]:

@@ -16,6 +16,7 @@ from ffsr_plan.robots.urdf.xml_reading import is_comment, placed_errors, refused
 COLLISION = ("collision", "visual", "ignore")
 """What becomes of a link with `<visual>` shapes and no `<collision>`: it is refused, its visual
 shapes are taken, or it has no shape."""
+_MASS_OF_A_FRAME = 1e-6  # [kg]
 
 
 def canonical_link(
@@ -84,15 +85,24 @@ def unchecked_links(robot: ElementTree.Element) -> tuple[str, ...]:
 
 
 def shapeless_links(robot: ElementTree.Element) -> tuple[str, ...]:
-    """Links of a canonical robot that have a mass and no shape of either kind."""
-    links = {str(link.get("name")): link for link in robot.findall("link")}
-    return tuple(name for name in unchecked_links(robot) if links[name].find("visual") is None)
+    """Links of a canonical robot that have a mass and no shape of either kind.
+
+    Tool frames of some files have masses of less than a milligram, for parsers that demand one;
+    they are left out.
+    """
+    return tuple(
+        str(link.get("name"))
+        for link in robot.findall("link")
+        if has_mass(link, _MASS_OF_A_FRAME)
+        and link.find("collision") is None
+        and link.find("visual") is None
+    )
 
 
-def has_mass(link: ElementTree.Element) -> bool:
-    """Whether a canonical link has a mass."""
+def has_mass(link: ElementTree.Element, above: float = 0.0) -> bool:
+    """Whether a canonical link has a mass greater than `above` [kg]."""
     mass = link.find("inertial/mass")
-    return mass is not None and float(str(mass.get("value"))) > 0.0
+    return mass is not None and float(str(mass.get("value"))) > above
 
 
 def colours_of(robot: ElementTree.Element, where: str) -> dict[str, str]:
