@@ -45,11 +45,11 @@ def read_urdf(
     one_of("collision", collision, COLLISION)
     one_of("inertia", inertia, INERTIA)
     given = parse(text, where)
-    check_element(given, where)
+    check_element(given, f"{where}, robot")
     if not given.get("name"):
         raise refused(given, f"{where}, robot name", given.get("name"), "a name")
     if given.get("version", "1.0").strip() not in _VERSIONS:
-        raise refused(given, f"{where}, version", given.get("version"), ", ".join(_VERSIONS))
+        raise refused(given, f"{where}, robot version", given.get("version"), ", ".join(_VERSIONS))
     without_world(given, where)
     check_tree(given, where)
     colours = colours_of(given, where)
