@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -66,20 +67,8 @@ def plan(
     chosen.refuse(problem)
     rng, seed_number = _generator(seed)
     request = _request(refine, colonies, workers, time_limit, on_cycle)
-    if chosen.exact and request.colonies > 1:
-        raise InvalidInput("colonies", colonies, f"1 with {chosen.name}: it has one result")
-    if chosen.exact and on_cycle is not None:
-        raise InvalidInput("on_cycle", on_cycle, f"None with {chosen.name}: it has no cycles")
-
-    def certified(solution: Solution) -> Plan:
-        return Plan(
-            problem=problem,
-            planner=chosen,
-            seed=seed_number,
-            seconds=time.perf_counter() - begin,
-            **solution._asdict(),
-        )
-
+    _check_exact(chosen, request)
+    certified = partial(_certified, problem, chosen, seed_number, begin)
     try:
         return certified(chosen.solve(problem, rng, request))
     except AttitudeOutOfReach as error:
@@ -143,6 +132,29 @@ def _request(
         time_limit=seconds,
         on_cycle=on_cycle,
     )
+
+
+def _certified(
+    problem: Problem, planner: Planner, seed: int | None, begin: float, solution: Solution
+) -> Plan:
+    """The plan of a solution; `begin` is when it was asked for, by `time.perf_counter`."""
+    return Plan(
+        problem=problem,
+        planner=planner,
+        seed=seed,
+        seconds=time.perf_counter() - begin,
+        **solution._asdict(),
+    )
+
+
+def _check_exact(planner: Planner, request: SearchRequest) -> None:
+    """Raise `InvalidInput` for what an exact planner would ignore."""
+    if planner.exact and request.colonies > 1:
+        allowed = f"1 with {planner.name}: it has one result"
+        raise InvalidInput("colonies", request.colonies, allowed)
+    if planner.exact and request.on_cycle is not None:
+        allowed = f"None with {planner.name}: it has no cycles"
+        raise InvalidInput("on_cycle", request.on_cycle, allowed)
 
 
 def _generator(seed: int | np.random.Generator) -> tuple[np.random.Generator, int | None]:
