@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -77,21 +78,9 @@ def plan(
     rng, seed_number = _generator(seed)
     request = _request(refine, colonies, workers, time_limit, on_cycle)
     check_colonies(problem, request.colonies)
-    if chosen.exact and request.colonies > 1:
-        raise InvalidInput("colonies", colonies, f"1 with {chosen.name}: it has one result")
-    if chosen.exact and on_cycle is not None:
-        raise InvalidInput("on_cycle", on_cycle, f"None with {chosen.name}: it has no cycles")
+    _check_exact(chosen, request)
     choice = one_of("on_interrupt", on_interrupt, (RETURN, RAISE))
-
-    def certified(solution: Solution) -> Plan:
-        return Plan(
-            problem=problem,
-            planner=chosen,
-            seed=seed_number,
-            seconds=time.perf_counter() - begin,
-            **solution._asdict(),
-        )
-
+    certified = partial(_certified, problem, chosen, seed_number, begin)
     try:
         with Interruption(choice) as interruption:
             stop, at_begin = interruption.is_pressed, interruption.begin
@@ -161,6 +150,29 @@ def _request(
         time_limit=seconds,
         on_cycle=on_cycle,
     )
+
+
+def _certified(
+    problem: Problem, planner: Planner, seed: int | None, begin: float, solution: Solution
+) -> Plan:
+    """The plan of a solution; `begin` is when it was asked for, by `time.perf_counter`."""
+    return Plan(
+        problem=problem,
+        planner=planner,
+        seed=seed,
+        seconds=time.perf_counter() - begin,
+        **solution._asdict(),
+    )
+
+
+def _check_exact(planner: Planner, request: SearchRequest) -> None:
+    """Raise `InvalidInput` for what an exact planner would ignore."""
+    if planner.exact and request.colonies > 1:
+        allowed = f"1 with {planner.name}: it has one result"
+        raise InvalidInput("colonies", request.colonies, allowed)
+    if planner.exact and request.on_cycle is not None:
+        allowed = f"None with {planner.name}: it has no cycles"
+        raise InvalidInput("on_cycle", request.on_cycle, allowed)
 
 
 def _generator(seed: int | np.random.Generator) -> tuple[np.random.Generator, int | None]:

@@ -51,10 +51,9 @@ def inverse_kinematics(
     set: without it the base arrives at another attitude, and the frame misses its pose.
 
     The search is local (damped least squares): from the start's joint values first, then from
-    random ones, until the pose is met. A revolute joint whose limits span more than a turn takes
-    the shorter direction: where wheels hold the base, by whole turns less; in the other modes,
-    where a whole turn changes the base's reaction, a pose at which no joint rotates by more than
-    half a turn is preferred to one at which a joint does.
+    random ones, until the pose is met. A revolute joint whose limits span more than a turn goes the
+    shorter way: by whole turns less where wheels hold the base; where it reacts to them, a pose at
+    which no joint goes more than half a turn is preferred.
 
     Args:
         robot: the robot.

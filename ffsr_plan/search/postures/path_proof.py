@@ -113,8 +113,11 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
 
     Where the corrected path is refused, the corners beside the refused edge are left unchanged and
     the others corrected. If that is refused too, the attitude there has to stay, so that the
-    corners behind it are corrected only. Without a proven correction the path is returned as it is.
+    corners behind it are corrected only. Without a proven correction the path is returned as it is,
+    and so is one that is not free, needs no correction or misses the attitude by too much.
     """
+    if proof.refused or not GOAL_TOLERANCE < proof.attitude_error <= CORRECTABLE:
+        return proof, 0
     problem, motion = lattice.problem, proof.motion
     directions = displacements(problem, lattice.base.nominal.joint_values)
     held = np.zeros(len(motion.positions), dtype=np.bool_)

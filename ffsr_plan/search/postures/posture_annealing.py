@@ -18,7 +18,6 @@ from ffsr_plan.search.postures.colony import PostureColony, PosturePath
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import (
     CORRECTABLE,
-    GOAL_TOLERANCE,
     PathProof,
     check_start,
     corners,
@@ -93,7 +92,10 @@ class PostureAnnealing(AnnealingSettings):
         proofs = _Proofs(lattice, colony)
         path = result.path
         for _ in range(_PROOF_ATTEMPTS):
-            if proofs.prove(path) or result.interrupted or monitor.expired():
+            proof = prove_path(lattice, *corners(lattice, path))
+            corrected, spent = corrected_proof(lattice, proof)
+            proofs.take(path, proof, corrected, spent)
+            if corrected.holds or result.interrupted or monitor.expired():
                 break
             shifts = _SHIFTS_AFTER_REFUSAL * problem.lattice.divisions
             path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL, monitor.expired)
@@ -129,24 +131,26 @@ class _Proofs:
         self._best: tuple[IntArray, PathProof, float] | None = None
         # path, proof of its motion, F on the lattice; of the least goal attitude error
 
-    def prove(self, path: IntArray) -> bool:
-        """Whether a path (m + 1, 2) is proven free and meets the goal attitude, if demanded."""
-        lattice = self._lattice
-        self._last = proof = prove_path(lattice, *corners(lattice, path))
-        self._queries += proof.prover.queries
+    def take(self, path: IntArray, proof: PathProof, corrected: PathProof, spent: int) -> None:
+        """Take note of a path (m + 1, 2).
+
+        Args:
+            path: the path.
+            proof: of it.
+            corrected: of its correction, or the same as `proof`.
+            spent: Coal queries of the correction.
+        """
+        self._last = proof
+        self._queries += proof.prover.queries + spent
         for edge in proof.refused:
             self._colony.refuse(edge.layer, path)
             self._refused += 1
         if proof.refused:
-            return False
-        on_lattice, missed = objective_of(lattice, proof), proof.attitude_error
-        if GOAL_TOLERANCE < missed <= CORRECTABLE:
-            proof, spent = corrected_proof(lattice, proof)
-            self._queries += spent
-            self._colony.demand(_LESS_FREE_ERROR * missed)
-        if self._best is None or proof.attitude_error < self._best[1].attitude_error:
-            self._best = path, proof, on_lattice
-        return proof.holds
+            return
+        if not corrected.holds and proof.attitude_error <= CORRECTABLE:
+            self._colony.demand(_LESS_FREE_ERROR * proof.attitude_error)
+        if self._best is None or corrected.attitude_error < self._best[1].attitude_error:
+            self._best = path, corrected, objective_of(self._lattice, proof)
 
     def solution(self, result: PosturePath) -> Solution:
         """The best path.
