@@ -51,6 +51,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
                 "centers": problem.scene.centers.tolist(),
                 "radii": problem.scene.radii.tolist(),
                 "excess": problem.scene.excess,
+                "sources": [list(source) for source in problem.scene.sources],
             },
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),
@@ -162,6 +163,7 @@ def from_dict(data: dict[str, Any]) -> PlanData:
             given["scene"]["centers"],
             given["scene"]["radii"],
             given["scene"].get("excess", 0.0),  # older files have none
+            given["scene"].get("sources", ()),  # nor these
         ),
         start=given["start"],
         goal=given["goal"],

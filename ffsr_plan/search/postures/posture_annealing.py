@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from ffsr_plan.core.arrays import IntArray, frozen
-from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput, UnprovenPath
+from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.certificate import Certificate, Counts
@@ -25,6 +25,7 @@ from ffsr_plan.search.postures.path_proof import (
     length_of,
     objective_of,
     prove_path,
+    unproven,
 )
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
@@ -98,7 +99,7 @@ class PostureAnnealing(AnnealingSettings):
             path, _ = colony.annealed(
                 path, shifts, *_TEMPERATURES_AFTER_REFUSAL, request.stop_requested
             )
-        _check_proof(problem, proof)
+        _check_proof(problem, proof, result.interrupted)
         lattice_objective = objective_of(lattice, proof)
         if problem.reach_attitude:
             proof, spent = corrected_proof(lattice, proof)
@@ -120,11 +121,10 @@ class PostureAnnealing(AnnealingSettings):
         return min(solutions, key=lambda solution: solution.objective)
 
 
-def _check_proof(problem: Problem, proof: PathProof) -> None:
+def _check_proof(problem: Problem, proof: PathProof, cut_short: bool) -> None:
     """Raise `UnprovenPath` or `AttitudeOutOfReach` if the proof does not hold."""
     if proof.refused:
-        layer, link, obstacle, distance = proof.refused[0]
-        raise UnprovenPath(layer + 1, link, obstacle, distance, problem.lattice.divisions)
+        raise unproven(problem, proof.refused[0], cut_short)
     if proof.attitude_error > ATTITUDE_TOLERANCE:
         wanted = float(angle_between(problem.start[3:7], problem.goal[3:7]))
         raise AttitudeOutOfReach(wanted, proof.attitude_error)
