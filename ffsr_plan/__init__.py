@@ -18,6 +18,7 @@ from ffsr_plan.core.errors import (
     AttitudeOutOfReach,
     FfsrPlanError,
     GoalInCollision,
+    HeldBase,
     IntegrationError,
     InternalError,
     InvalidInput,
@@ -30,6 +31,7 @@ from ffsr_plan.core.errors import (
     UnprovenPath,
     WorkerDied,
 )
+from ffsr_plan.core.formatting import Contact
 from ffsr_plan.dynamics import momentum
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.inverse_dynamics import States
@@ -80,11 +82,13 @@ __all__ = [
     "Certificate",
     "Clearance",
     "Components",
+    "Contact",
     "Counts",
     "Cycle",
     "EdgeProof",
     "FfsrPlanError",
     "GoalInCollision",
+    "HeldBase",
     "History",
     "IntegrationError",
     "InternalError",

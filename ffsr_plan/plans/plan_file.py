@@ -35,6 +35,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
                 "centers": problem.scene.centers.tolist(),
                 "radii": problem.scene.radii.tolist(),
                 "excess": problem.scene.excess,
+                "sources": [list(source) for source in problem.scene.sources],
             },
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),

@@ -148,11 +148,12 @@ class RobotTable:
 
 @settings
 class SceneTable:
-    """Obstacles; files of older versions have no excess."""
+    """Obstacles; files of older versions have neither excess nor sources."""
 
     centers: Annotated[Any, Columns((2,))]
     radii: Annotated[Any, Columns()]
     excess: Annotated[float, Number(at_least=0.0)] = 0.0
+    sources: Annotated[Any, AnyValue()] = ()
 
 
 @settings

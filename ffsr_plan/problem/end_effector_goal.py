@@ -5,11 +5,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
+from ffsr_plan.collision.contacts import goal_in_collision
+from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, whole_number
-from ffsr_plan.core.errors import GoalInCollision, InvalidInput, PoseOutOfReach, unknown_name
-from ffsr_plan.core.rotations import from_angles, matrix
+from ffsr_plan.core.errors import (
+    GoalInCollision,
+    HeldBase,
+    InvalidInput,
+    PoseOutOfReach,
+    unknown_name,
+)
+from ffsr_plan.core.rotations import angle_between, from_angles, matrix
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.problem.pose_error import (
     PoseTarget,
@@ -77,7 +84,7 @@ def inverse_kinematics(
     Raises:
         InvalidInput: an argument that is not allowed.
         PoseOutOfReach: no joint values were found; with the error of the best ones.
-        GoalInCollision: the pose was met in collision only; with the first collision found.
+        GoalInCollision: the pose was met in collision only; with all that touches there.
     """
     target = pose_target(
         robot,
@@ -90,7 +97,10 @@ def inverse_kinematics(
         base_attitude=base_attitude,
     )
     rng = np.random.default_rng(whole_number("seed", seed, at_least=0))
-    return _solution(frame, _Descent(target), _CollisionCheck(robot, scene), rng)
+    try:
+        return _solution(frame, _Descent(target), _CollisionCheck(robot, scene), rng)
+    except PoseOutOfReach as error:
+        raise _explained(error, target) from None
 
 
 def pose_target(
@@ -152,7 +162,7 @@ def _solution(
 
     One in which a joint goes a whole turn out of its way is returned only if no other is found.
     """
-    collision: Nearest | None = None
+    collision: Array | None = None
     best, least, detour = descent.no_change, np.inf, None
     for attempt in range(_DESCENTS):
         first = descent.no_change if attempt == 0 else descent.random_change(rng)
@@ -161,11 +171,11 @@ def _solution(
         if error < least:
             best, least = change, error
         for candidate in descent.solutions(change):
-            contact = collides(descent.end(candidate))
-            if contact is not None:
-                collision = collision or contact
+            end = descent.end(candidate)
+            if collides(end):
+                collision = end if collision is None else collision
             elif not descent.turns(candidate).any():
-                return frozen(descent.end(candidate))
+                return frozen(end)
             elif detour is None:
                 detour = candidate
     if detour is not None:
@@ -174,27 +184,91 @@ def _solution(
     best = next(iter(descent.solutions(best)), best)
     rest, q = descent.error(best), descent.end(best)
     if np.linalg.norm(rest) < POSE_TOLERANCE:
-        contact = collision or collides(q)
-        if contact is None:
+        if collision is None and not collides(q):
             return frozen(q)
-        raise GoalInCollision(contact.link, contact.obstacle, -contact.distance)
+        raise collides.error(q if collision is None else collision)
     rotation_error = float(np.linalg.norm(rest[3:])) if len(rest) > 3 else None
     raise PoseOutOfReach(frame, float(np.linalg.norm(rest[:3])), rotation_error, frozen(q))
 
 
+def _explained(error: PoseOutOfReach, target: PoseTarget) -> PoseOutOfReach:
+    """The error, with what a held base and a free attitude of the frame would reach."""
+    held = _of_held_base(target) if target.mode.attitude_reacts else None
+    without = None
+    if target.rotation is not None:
+        descents = _descents(_Descent(target._replace(rotation=None)))
+        without = any(missed < POSE_TOLERANCE for missed, _ in descents)
+    advice = ["leave out the attitude: the position alone is reached"] if without else []
+    if held is None:
+        advice.append("a base_position nearer to the pose, or another base_attitude")
+    elif held.reached:
+        place = "" if target.mode.floats else " or base_position"
+        advice += [
+            "the mode attitude-held, if the robot has wheels",
+            f"another start{place}, nearer or turned against the reaction",
+            "another seed",
+        ]
+    else:
+        place = "a start" if target.mode.floats else "a base_position"
+        advice.append(f"{place} nearer to the pose")
+    return PoseOutOfReach(
+        error.frame,
+        error.position_missed,
+        error.attitude_missed,
+        error.configuration,
+        held,
+        without,
+        tuple(advice),
+    )
+
+
+def _of_held_base(target: PoseTarget) -> HeldBase:
+    """What a held base reaches; of several ways, the one that the reaction falsifies least."""
+    quat = target.start[3:7]
+    descents = _descents(_Descent(target._replace(mode=Mode.ATTITUDE_HELD, base_quat=quat)))
+    reached = [change for missed, change in descents if missed < POSE_TOLERANCE]
+    least = min(descents, key=lambda descent: descent[0])[1]
+    effects = []
+    for change in reached or [least]:
+        end = _Descent(target).end(change)
+        rotation = float(angle_between(quat, end[3:7]))
+        effects.append((float(np.linalg.norm(pose_error(target, end)[:3])), rotation))
+    missed, rotation = min(effects)
+    if not reached:
+        held = target._replace(mode=Mode.ATTITUDE_HELD, base_quat=quat)
+        missed = float(np.linalg.norm(pose_error(held, _Descent(held).end(least))[:3]))
+    return HeldBase(bool(reached), rotation, missed)
+
+
+def _descents(descent: _Descent) -> list[tuple[float, Array]]:
+    """Error and change (nd,) at the end of each descent, always from the same first changes."""
+    rng = np.random.default_rng(0)
+    firsts = [descent.no_change, *(descent.random_change(rng) for _ in range(_DESCENTS - 1))]
+    changes = [descent.run(first, _COARSE) for first in firsts]
+    return [(float(np.linalg.norm(descent.error(change))), change) for change in changes]
+
+
 class _CollisionCheck:
-    """The first contact of a configuration with an obstacle or between links, if any."""
+    """Whether a configuration touches an obstacle, or links touch one another."""
 
     def __init__(self, robot: SpaceRobot, scene: Scene | None) -> None:
         if scene is not None and not isinstance(scene, Scene):
             raise InvalidInput("scene", scene, "a Scene, or None")
+        self._robot, self._scene = robot, scene
         self._queries: list[ObstacleQuery | SelfQuery] = []
         if scene is not None:
             self._queries = [ObstacleQuery(robot, scene), SelfQuery(robot)]
 
-    def __call__(self, q: Array) -> Nearest | None:
-        results = (query.nearest(q) for query in self._queries if not query.empty)
-        return next((result for result in results if result.distance <= 0.0), None)
+    def __call__(self, q: Array) -> bool:
+        queries = (query for query in self._queries if not query.empty)
+        return any(query.nearest(q).distance <= 0.0 for query in queries)
+
+    def error(self, q: Array) -> GoalInCollision:
+        """The error for a configuration in collision."""
+        assert self._scene is not None
+        error = goal_in_collision(self._robot, self._scene, q)
+        error.advice = ("another seed", *error.advice)
+        return error
 
 
 class _Descent:

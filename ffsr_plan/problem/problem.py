@@ -9,9 +9,10 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.collision.contacts import contacts
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.formatting import counted, html_table
+from ffsr_plan.core.formatting import contact_list, counted, html_table
 from ffsr_plan.core.rotations import rotation_vector, to_angles
 from ffsr_plan.core.setting_rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
@@ -35,7 +36,28 @@ class Configuration(Rule):
         if "robot" not in others:  # refused already
             return value
         robot: SpaceRobot = others["robot"]
-        return robot.check_configuration(what, value)  # type: ignore[arg-type]
+        try:
+            return robot.check_configuration(what, value)  # type: ignore[arg-type]
+        except InvalidInput as error:
+            touching = _touching(robot, others.get("scene", Scene()), what, value)
+            if not touching:
+                raise
+            allowed = f"{error.allowed}; at these values, {touching}"
+            raise InvalidInput(error.what, error.value, allowed) from None
+
+
+def _touching(robot: SpaceRobot, scene: Scene, what: str, value: object) -> str:
+    """What touches at a configuration with joint values outside their limits.
+
+    Obstacles count at the start only: where the base is at the goal depends on the mode.
+    """
+    q = np.array(value, dtype=np.float64)
+    size = float(np.linalg.norm(q[3:7])) if q.shape == (robot.model.nq,) else 0.0
+    if not (np.all(np.isfinite(q)) and size > 0.5):
+        return ""
+    q[3:7] /= size
+    found = contacts(robot, scene if what == "start" else Scene(), q)
+    return contact_list(found) if found else ""
 
 
 @dataclass(frozen=True)

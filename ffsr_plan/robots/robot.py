@@ -365,14 +365,22 @@ class SpaceRobot:
         return frozen(checked)
 
     def check_limits(self, what: str, joint_values: Array) -> None:
-        """Raise `InvalidInput` for the first joint value outside its limits."""
-        for k, name in enumerate(self.joint_names):
-            if not self.lower[k] <= joint_values[k] <= self.upper[k]:
-                raise InvalidInput(
-                    f"{what} (joint {name})",
-                    float(joint_values[k]),
-                    f"{self.lower[k]:g} to {self.upper[k]:g}",
-                )
+        """Raise `InvalidInput` that names all joint values outside their limits."""
+        outside = ~((self.lower <= joint_values) & (joint_values <= self.upper))
+        wrong = np.flatnonzero(outside).tolist()
+        if not wrong:
+            return
+        names = [self.joint_names[k] for k in wrong]
+        ranges = [f"{self.lower[k]:g} to {self.upper[k]:g}" for k in wrong]
+        if len(wrong) == 1:
+            raise InvalidInput(
+                f"{what} (joint {names[0]})", float(joint_values[wrong[0]]), ranges[0]
+            )
+        raise InvalidInput(
+            f"{what} (joints {', '.join(names)})",
+            [float(joint_values[k]) for k in wrong],
+            ", ".join(f"{name} {limits}" for name, limits in zip(names, ranges, strict=True)),
+        )
 
     def save(self, path: str | Path) -> None:
         """Write the URDF, and the SRDF if there is one to a `.srdf` file beside it.

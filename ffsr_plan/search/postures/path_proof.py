@@ -7,10 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ffsr_plan.collision.contacts import named, start_in_collision
+from ffsr_plan.collision.distances import Nearest
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.errors import StartInCollision
+from ffsr_plan.core.errors import UnprovenPath
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.problem.advice import for_proof
 from ffsr_plan.problem.objective import objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
@@ -145,7 +148,7 @@ def check_start(problem: Problem) -> None:
     """Check that the start touches nothing.
 
     Raises:
-        StartInCollision: with link, obstacle and depth.
+        StartInCollision: with all that touches.
     """
     start = problem.start
     motion = Motion(problem.robot, problem.mode, start, start, np.tile(start[:3], (2, 1)))
@@ -153,7 +156,28 @@ def check_start(problem: Problem) -> None:
     still = np.zeros(3)
     for near in (prover.nearest(0, still, still, 0.0), prover.nearest_links(0, 0.0)):
         if near.distance <= 0.0:
-            raise StartInCollision(near.link, near.obstacle, -near.distance)
+            raise start_in_collision(problem.robot, problem.scene, start)
+
+
+def unproven(problem: Problem, edge: RefusedEdge, cut_short: bool) -> UnprovenPath:
+    """The error for a path that could not be proven free.
+
+    Args:
+        problem: gives the scene and the lattice.
+        edge: the first refused edge.
+        cut_short: whether a time limit ended the search.
+    """
+    contact = named(problem.scene, Nearest(edge.distance, edge.link, edge.obstacle))
+    advice = for_proof(problem, cut_short, isinstance(edge.obstacle, str))
+    return UnprovenPath(
+        edge.layer + 1,
+        edge.link,
+        edge.obstacle,
+        edge.distance,
+        problem.lattice.divisions,
+        contact.source,
+        advice,
+    )
 
 
 def length_of(lattice: PostureLattice, motion: Motion) -> float:

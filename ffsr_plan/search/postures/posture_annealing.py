@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from ffsr_plan.core.arrays import IntArray, frozen
-from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput, UnprovenPath
+from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.certificate import Certificate, Counts
@@ -25,6 +25,7 @@ from ffsr_plan.search.postures.path_proof import (
     length_of,
     objective_of,
     prove_path,
+    unproven,
 )
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
@@ -165,8 +166,7 @@ class _Proofs:
         problem = self._lattice.problem
         if self._best is None:
             assert self._last is not None
-            layer, link, obstacle, distance = self._last.refused[0]
-            raise UnprovenPath(layer + 1, link, obstacle, distance, problem.lattice.divisions)
+            raise unproven(problem, self._last.refused[0], result.interrupted)
         path, proof, on_lattice = self._best
         m = len(path) - 1
         counts = Counts(m, self._refused, m + 1, self._queries - m - 1)
