@@ -11,6 +11,7 @@ from ffsr_plan.core.errors import InvalidInput, NoPath
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.lattice.memory_estimate import check_lattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
 from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
@@ -36,6 +37,7 @@ class Roadmap:
             NoPath: the arms collide with each other on an edge of the nominal motion, whatever the
                 offsets.
         """
+        check_lattice(problem)
         if problem.lattice.postures:
             raise InvalidInput(
                 "lattice postures",

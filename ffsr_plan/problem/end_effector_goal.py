@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, whole_number
-from ffsr_plan.core.errors import GoalInCollision, InvalidInput, PoseOutOfReach, unknown_name
+from ffsr_plan.core.checks import FARTHEST, finite_array, one_of, whole_number
+from ffsr_plan.core.errors import GoalInCollision, InvalidInput, PoseOutOfReach
 from ffsr_plan.core.rotations import from_angles, matrix
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.problem.pose_error import PoseTarget, end_configuration, pose_error, pose_jacobian
@@ -101,8 +101,7 @@ def pose_target(
         raise InvalidInput("robot", robot, "a SpaceRobot")
     if robot.nd == 0:
         raise InvalidInput("robot", robot.name, "a robot with joints")
-    if not isinstance(frame, str) or not robot.model.existFrame(frame):
-        raise unknown_name("frame", frame, [f.name for f in robot.model.frames])
+    one_of("frame", frame, [f.name for f in robot.model.frames])
     if base_position is not None and mode.floats:
         raise InvalidInput(
             "base_position",

@@ -140,7 +140,7 @@ class Scene:
         factor = number("scale", scale, above=0.0, at_most=_LARGEST_SCALE)
         triangles = factor * corners @ axes.T + finite_array("position", position, (3,), FARTHEST)
         finite_array("mesh, corners in the world", triangles, (-1, 3, 3), FARTHEST)
-        excess = number("mesh, excess", excess, above=0.0)
+        excess = number("mesh, excess", excess, above=0.0, at_most=FARTHEST)
         spheres = cover(triangles, excess, truth("inside", inside))
         return cls(spheres.centers, spheres.radii, excess)
 
