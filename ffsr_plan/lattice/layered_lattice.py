@@ -42,10 +42,10 @@ class LayeredLattice:
     """
 
     def __init__(self, problem: Problem) -> None:
+        check_lattice(problem)
         self.problem = problem
         lattice = problem.lattice
         axes = [getattr(lattice, name) for name in lattice.axes]
-        check_lattice(problem)
         counts = [np.arange(-a.half_count, a.half_count + 1) for a in axes]
         grids = np.meshgrid(*counts, indexing="ij")
         self.indices: IntArray = (

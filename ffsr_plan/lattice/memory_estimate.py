@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from ffsr_plan.core.cost_estimate import check_memory, check_work
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.problem.problem import Problem
 
 BYTES_PER_PAIR_OF_OFFSETS = 64
@@ -25,13 +26,18 @@ _ADVICE = "fewer divisions, a smaller half_count or fewer axes"
 
 
 def check_lattice(problem: Problem, bytes_per_edge: float = 1.0, ants: int = 0) -> None:
-    """Raise `InvalidInput` if a search of the base offsets would take too much memory or work.
+    """Check that a search of the base offsets takes no more memory and work than is allowed.
 
     Args:
         problem: gives the lattice and the robot.
         bytes_per_edge: memory of all arrays with one entry for each edge [bytes].
         ants: ants of a cycle, each of which has a path.
+
+    Raises:
+        InvalidInput: with the counts that cause it; or not a problem.
     """
+    if not isinstance(problem, Problem):
+        raise InvalidInput("problem", problem, "a Problem")
     lattice = problem.lattice
     axes = [getattr(lattice, name) for name in lattice.axes]
     nodes = math.prod(2 * axis.half_count + 1 for axis in axes)

@@ -8,13 +8,12 @@ from numpy.typing import ArrayLike
 from ffsr_plan.collision.contacts import goal_in_collision
 from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, whole_number
+from ffsr_plan.core.checks import FARTHEST, finite_array, one_of, whole_number
 from ffsr_plan.core.errors import (
     GoalInCollision,
     HeldBase,
     InvalidInput,
     PoseOutOfReach,
-    unknown_name,
 )
 from ffsr_plan.core.rotations import angle_between, from_angles, matrix
 from ffsr_plan.dynamics.actuation_mode import Mode
@@ -123,8 +122,7 @@ def pose_target(
         raise InvalidInput("robot", robot, "a SpaceRobot")
     if robot.nd == 0:
         raise InvalidInput("robot", robot.name, "a robot with joints")
-    if not isinstance(frame, str) or not robot.model.existFrame(frame):
-        raise unknown_name("frame", frame, [f.name for f in robot.model.frames])
+    one_of("frame", frame, [f.name for f in robot.model.frames])
     if base_position is not None and mode.floats:
         raise InvalidInput(
             "base_position",

@@ -133,7 +133,7 @@ def compose(
     """
     if not isinstance(bus, Bus):
         raise InvalidInput("bus", bus, "a Bus")
-    if not isinstance(name, str) or not name:
+    if not isinstance(name, str) or not name or not name.isprintable():
         raise InvalidInput("name", name, "a name")
     one_of("shapes", shapes, SHAPES)
     if not isinstance(arms, Sequence) or isinstance(arms, str):
@@ -142,11 +142,13 @@ def compose(
         if not isinstance(mount, Mount):
             allowed = "Mounts, such as Mount('ur5', position=(0, 0, 0.5), prefix='left_')"
             raise InvalidInput("arms", mount, allowed)
+    if not isinstance(may_touch, Sequence) or isinstance(may_touch, (str, bytes)):
+        raise InvalidInput("may_touch", may_touch, "pairs of link names")
     loaded = [
         load_arm(m.arm, m.locked, m.srdf, collision=m.collision, inertia=m.inertia) for m in arms
     ]
     both = list(zip(loaded, arms, strict=True))
-    robot = put_together(bus, both, name, shapes, postures or {}, may_touch)
+    robot = put_together(bus, both, name, shapes, {} if postures is None else postures, may_touch)
     warn_of_shapeless_links(robot)
     return robot
 
@@ -300,7 +302,11 @@ def _srdf(
             checked = number(f"postures['{posture}'], '{joint}'", value)
             ElementTree.SubElement(state, "joint", name=str(joint), value=attribute_text(checked))
     for pair in may_touch:
-        if len(pair) != 2 or not all(isinstance(link, str) for link in pair):
+        if (
+            not isinstance(pair, Sequence)
+            or len(pair) != 2
+            or not all(isinstance(link, str) for link in pair)
+        ):
             raise InvalidInput("may_touch", pair, "pairs of link names")
         ElementTree.SubElement(root, "disable_collisions", link1=pair[0], link2=pair[1])
     if not len(root):

@@ -23,6 +23,8 @@ from ffsr_plan.meshes.sphere_cover import cover
 from ffsr_plan.scene import sphere_files
 from ffsr_plan.scene.sphere_tree import SphereTree, sphere_tree
 
+_LARGEST_SCALE = 1e9
+
 
 @dataclass(frozen=True, eq=False, init=False)
 class Scene:
@@ -148,9 +150,10 @@ class Scene:
         if len(corners) == 0:
             raise InvalidInput("mesh", "no triangle", "a mesh with triangles")
         axes = rotations.matrix(rotations.from_angles(finite_array("attitude", attitude, (3,))))
-        triangles = number("scale", scale, above=0.0) * corners @ axes.T
-        triangles = triangles + finite_array("position", position, (3,), FARTHEST)
-        excess = number("mesh, excess", excess, above=0.0)
+        factor = number("scale", scale, above=0.0, at_most=_LARGEST_SCALE)
+        triangles = factor * corners @ axes.T + finite_array("position", position, (3,), FARTHEST)
+        finite_array("mesh, corners in the world", triangles, (-1, 3, 3), FARTHEST)
+        excess = number("mesh, excess", excess, above=0.0, at_most=FARTHEST)
         spheres = cover(triangles, excess, truth("inside", inside))
         name = Path(mesh).name if isinstance(mesh, (str, Path)) else "mesh"
         return cls(spheres.centers, spheres.radii, excess).named(name)
