@@ -116,9 +116,7 @@ def _check_sizes(what: str, table: PlanTable) -> None:
 def _problem(what: str, table: ProblemTable) -> Problem:
     scene = table.scene
     robot = _robot(what, table.robot)
-    made = _within(
-        what, "problem.scene", lambda: Scene(scene.centers, scene.radii, scene.excess)
-    )
+    made = _within(what, "problem.scene", lambda: Scene(scene.centers, scene.radii, scene.excess))
     return _within(
         what,
         "problem",

@@ -44,9 +44,7 @@ class RateBounds:
         reach: (s,) largest distance of any point of a shape from the base origin [m].
     """
 
-    def __init__(
-        self, bodies: Bodies, names: tuple[str, ...], joint_values: Array
-    ) -> None:
+    def __init__(self, bodies: Bodies, names: tuple[str, ...], joint_values: Array) -> None:
         """Bounds for joint values (m + 1, nd) at the corners.
 
         Args:
@@ -121,9 +119,7 @@ class RateBounds:
         with np.errstate(divide="ignore", invalid="ignore"):
             self._fastest_turn: Array = np.where(momentum > 0.0, momentum / least.sum(), 0.0)
         self._momentum_rate: Array = (
-            turns**2 @ (most - least)
-            + turn_changes @ most
-            + speed_changes @ (mass * distance)
+            turns**2 @ (most - least) + turn_changes @ most + speed_changes @ (mass * distance)
         )
         self._inertia_rate: Array = turns @ (most - least) + 2.0 * speeds @ (mass * distance)
 

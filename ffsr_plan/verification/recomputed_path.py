@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.verification.motion_samples import Sampler
 from ffsr_plan.verification.recomputed_objective import (
     AGREEMENT,
@@ -116,9 +116,7 @@ class LatticePath:
             samples = samples._replace(base_places=self.positions - problem.start[:3])
             distances = SampledDistances(bodies, problem.scene, problem.start[:3])
             nodes = distances.clearances(samples)
-        value = objective_of(
-            problem, length_of(problem, self.positions, self.joint_values), nodes
-        )
+        value = objective_of(problem, length_of(problem, self.positions, self.joint_values), nodes)
         return float(nodes.min()), value, tolerances(problem, bodies, nodes, value)[1]
 
     def _least(self) -> float:
@@ -149,7 +147,7 @@ def _directions(plan: PlanData) -> Array:
     return np.array([axes[name] for name in names])
 
 
-def _displacements(plan: PlanData, indices: Array, nominal: Array) -> Array:
+def _displacements(plan: PlanData, indices: IntArray, nominal: Array) -> Array:
     """(m + 1, nd) displacement of the joints by posture axes at indices (m + 1, axes)."""
     robot = plan.problem.robot
     total = np.zeros_like(nominal)

@@ -175,7 +175,14 @@ def test_a_byte_order_mark_is_no_change(fig2a_plan, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["\0{}",'{"format": "ffsr-plan/3", "a": NaN}', "[" * 100_000, '{"a":' * 20_000, '{"a": ' + "1" * 5001 + "}"]
+    "text",
+    [
+        "\0{}",
+        '{"format": "ffsr-plan/3", "a": NaN}',
+        "[" * 100_000,
+        '{"a":' * 20_000,
+        '{"a": ' + "1" * 5001 + "}",
+    ],
 )
 def test_hostile_json_is_refused(tmp_path, text):
     (tmp_path / "plan.json").write_text(text)
