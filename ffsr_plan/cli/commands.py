@@ -18,7 +18,7 @@ import typer
 from ffsr_plan.cli.planning import LiveOptions, Options, plan_and_report
 from ffsr_plan.cli.printed_tables import flight_table, report_table, robot_table
 from ffsr_plan.cli.result_files import check_replacement, check_target, unused_path
-from ffsr_plan.cli.terminal import INTERRUPTED, errors_on_stderr, out_console, with_spinner
+from ffsr_plan.cli.terminal import INTERRUPTED, errors_on_stderr, out_console, with_progress
 from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
 from ffsr_plan.search.interruption import CtrlC, raise_ctrl_c
 
@@ -120,14 +120,19 @@ def plan(
 @app.command()
 def verify(
     plan_file: PlanFile,
-    samples: Annotated[int, typer.Option(help="Distance checks per edge.")] = 2000,
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            help="Least number of steps on each edge, 50 by default; halved where needed."
+        ),
+    ] = None,
 ) -> None:
-    """Verify a saved plan by dense samples, independently of the planner."""
+    """Verify a saved plan all along its motion, independently of the planner."""
     with errors_on_stderr():
         from ffsr_plan.planning.certified_plan import Plan
 
         loaded = Plan.load(plan_file)
-        report = with_spinner("verifying", lambda: loaded.verify(samples))
+        report = with_progress("verifying", lambda told: loaded.verify(samples, told))
         out_console.print(report_table(report))
         if not report.ok:
             raise PlanNotVerified(report.problems)

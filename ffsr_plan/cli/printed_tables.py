@@ -68,9 +68,13 @@ def _robot_words(robot: RobotSummary) -> Iterator[str]:
 def report_rows(report: Report) -> Iterator[tuple[str, str]]:
     """Names and values of a verification report."""
     yield "verified", "yes" if report.ok else "NO, see below"
-    yield "  samples", f"{report.samples}, at most {1e3 * report.largest_step:.2f} mm apart"
+    hidden = "nothing can be hidden between them"
+    if report.largest_gap > 0.0:
+        hidden = f"a contact may be hidden between two, {report.largest_gap:.1e} m apart"
+    yield "  samples", f"{report.samples}, {hidden}"
     if np.isfinite(report.least_clearance):  # there are obstacles
-        yield "  least clearance", f"{report.least_clearance:.6f} m"
+        least, bound = report.least_clearance, report.clearance_bound
+        yield "  least clearance", f"{least:.6f} m measured, at least {bound:.6f} m between samples"
     if np.isfinite(report.least_self_separation):
         yield "  least link-to-link", f"{report.least_self_separation:.6f} m"
     if report.momentum_residual is not None:
@@ -81,6 +85,7 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
         yield "  wheel momentum error", f"{report.wheel_momentum_error:.1e} relative"
     if report.unchecked:
         yield "  links not checked", ", ".join(report.unchecked)
+    yield "  not checked", "\n".join(report.not_checked)
 
 
 def flight_rows(flight: TimedPlan) -> Iterator[tuple[str, str]]:

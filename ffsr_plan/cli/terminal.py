@@ -24,18 +24,22 @@ INTERNAL_ERROR = 70
 """Exit status for what is the program's fault, EX_SOFTWARE of sysexits.h."""
 
 
-def with_spinner(label: str, work: Callable[[], T]) -> T:
-    """Run `work` with a spinner and a label on standard error.
+def with_progress(label: str, work: Callable[[Callable[[float], object]], T]) -> T:
+    """Run `work` with a progress bar on standard error, if that is a terminal.
 
     Args:
         label: what is being done.
-        work: a function without arguments.
+        work: a function of a callback, which it calls with the share that is done, from 0 to 1.
 
     Returns:
         What `work` returns.
     """
-    with err_console.status(label):
-        return work()
+    from rich.progress import Progress
+
+    hidden = not err_console.is_terminal
+    with Progress(console=err_console, transient=True, disable=hidden) as progress:
+        task = progress.add_task(label, total=1.0)
+        return work(lambda share: progress.update(task, completed=share))
 
 
 @contextmanager

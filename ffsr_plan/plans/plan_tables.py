@@ -81,9 +81,9 @@ class Meshes(Rule):
         """See `Rule.check`."""
         if not isinstance(value, Mapping):
             raise InvalidInput(what, value, "corners by mesh address")
-        found = {}
+        found: dict[str, Array] = {}
         for address, corners in value.items():
-            array = Columns((2,)).check(f"{what}.{address}", corners, {})
+            array: Any = Columns((2,)).check(f"{what}.{address}", corners, {})
             if array.shape[1] != 3 or not np.all(np.abs(array) <= 1e9):
                 allowed = "lists of three numbers of at most 1e9"
                 raise InvalidInput(f"{what}.{address}", corners, allowed)

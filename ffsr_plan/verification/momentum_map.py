@@ -69,9 +69,9 @@ def momentum_map(bodies: Bodies, names: Sequence[str], poses: dict[str, Array]) 
     centers = first / mass
     columns -= np.cross(centers[:, :, None], linear, axis=1)
     inertia = second - mass * _second(centers)
-    return MomentumMap(
-        -np.linalg.solve(inertia, columns), np.linalg.eigvalsh(inertia)[:, 0], centers
-    )
+    reactions = np.asarray(-np.linalg.solve(inertia, columns), dtype=np.float64)
+    least = np.asarray(np.linalg.eigvalsh(inertia)[:, 0], dtype=np.float64)
+    return MomentumMap(reactions, least, centers)
 
 
 def _moments(bodies: Bodies, link: str, pose: Array) -> tuple[float, Array, Array]:

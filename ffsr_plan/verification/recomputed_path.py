@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.verification.motion_samples import Sampler
 from ffsr_plan.verification.recomputed_objective import (
     AGREEMENT,
@@ -147,7 +147,7 @@ def _directions(plan: PlanData) -> Array:
     return np.array([axes[name] for name in names])
 
 
-def _displacements(plan: PlanData, indices: Array, nominal: Array) -> Array:
+def _displacements(plan: PlanData, indices: IntArray, nominal: Array) -> Array:
     """(m + 1, nd) displacement of the joints by posture axes at indices (m + 1, axes)."""
     robot = plan.problem.robot
     total = np.zeros_like(nominal)

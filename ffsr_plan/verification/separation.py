@@ -50,7 +50,9 @@ class SampledDistances:
         self.pairs: IntArray = np.array(
             [(number[a], number[b]) for a, b in pairs], dtype=np.int64
         ).reshape(-1, 2)
-        self.names = [(shape.link,) for shape in bodies.shapes[: self.shapes]]
+        self.names: list[tuple[str, ...]] = [
+            (shape.link,) for shape in bodies.shapes[: self.shapes]
+        ]
         self.names += [(a.link, b.link) for a, b in pairs]
         self.parts = len(self.names)
         self._solids = arrays_of(bodies.shapes)

@@ -106,7 +106,9 @@ class _Items(NamedTuple):
     at_last: Array
 
     def chosen(self, flags: Flags) -> _Items:
-        return _Items(*(column[flags] for column in self))
+        return _Items(
+            self.interval[flags], self.part[flags], self.at_first[flags], self.at_last[flags]
+        )
 
 
 def sweep(
@@ -262,8 +264,10 @@ class _Sweep:
         self, intervals: _Intervals, items: _Items, travel: Array
     ) -> tuple[_Intervals, _Items]:
         """Both halves of the intervals of open items, with the distances at their middles."""
-        chosen, of_item = np.unique(items.interval, return_inverse=True)
-        edge, begin, end, first, last, _ = (column[chosen] for column in intervals)
+        chosen, inverse = np.unique(items.interval, return_inverse=True)
+        of_item: IntArray = inverse.ravel()
+        edge, begin, end = intervals.edge[chosen], intervals.begin[chosen], intervals.end[chosen]
+        first, last = intervals.first[chosen], intervals.last[chosen]
         middle = 0.5 * (begin + end)
         if not len(chosen):
             return intervals, items

@@ -156,7 +156,10 @@ def _not_checked(plan: PlanData, path: LatticePath, bodies: Bodies) -> Iterator[
         yield "that the optimum is the least F on the lattice (`LatticeOptimum` computes it anew)"
     else:
         yield "that the lower bound on F holds"
-    yield "numbers of edges and queries, history, trails, planner, seed, interruption and seconds"
+    yield "how it was found: planner, seed, tolerance, history, trails, counts of edges and queries"
+    yield "whether the search was interrupted, and its seconds"
+    if plan.problem.scene.excess > 0.0:
+        yield "that the spheres cover what they stand for, and by how much they exceed it"
     if path.bent:
         yield "F on the lattice, from which the joints were moved to reach the goal's attitude"
     elif path.moved:

@@ -199,11 +199,11 @@ def test_a_plan_far_from_the_origin_is_the_same_plan(robot):
     for far in (0.0, 98_765.0):
         place = np.array([far, -far, 0.3 * far])
         start = robot.configuration(place)
-        goal = robot.configuration(place + [3.0, 0.0, 0.0], joints={"left_1": 1.0})
+        goal = robot.configuration(place + np.array([3.0, 0.0, 0.0]), joints={"left_1": 1.0})
         for mode in ("free-flying", "attitude-held", "free-floating"):
             end = robot.assemble(start[:3] if mode == "free-floating" else goal[:3],
                                  goal[3:7], goal[7:])  # fmt: skip
-            scene = fp.Scene([place + [1.5, 2.0, 0.1]], [0.2])
+            scene = fp.Scene([place + np.array([1.5, 2.0, 0.1])], [0.2])
             problem = fp.Problem(robot, scene, start, end, mode, fp.Lattice(10), delta=0.1)
             report = fp.plan(problem).verify()
             assert report.ok, (far, mode, report.problems)

@@ -37,7 +37,7 @@ def test_no_point_travels_farther_than_its_bound(mode, step):
             moved = np.linalg.norm(np.diff(plan.motion.positions, axis=0), axis=1)
             speeds = speeds + moved[:, None]
         at = placed(plan, np.linspace(0.0, 1.0, 8 * STEPS + 1))
-        for k, ((shape, poses), some) in enumerate(zip(at, points, strict=True)):
+        for k, ((_, poses), some) in enumerate(zip(at, points, strict=True)):
             tracks = np.einsum("nij,pj->npi", poses[:, :3, :3], some) + poses[:, None, :3, 3]
             ways = np.linalg.norm(np.diff(tracks, axis=0), axis=2).reshape(8, STEPS, -1)
             way = ways.sum(axis=1).max(axis=1)
