@@ -101,10 +101,8 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     Raises:
         InvalidInput: `samples` is not a positive integer, or too large.
     """
-    divisions = plan.problem.lattice.divisions
-    samples = whole_number(
-        "samples", samples, at_least=1, at_most=max(1, _MOST_EVEN_SAMPLES // divisions)
-    )
+    most = max(1, _MOST_EVEN_SAMPLES // plan.problem.lattice.divisions)
+    samples = whole_number("samples", samples, at_least=1, at_most=most)
     if on_progress is not None and not callable(on_progress):
         raise InvalidInput("on_progress", on_progress, "a function, or None")
     problem = plan.problem
