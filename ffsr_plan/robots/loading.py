@@ -140,8 +140,8 @@ def robot_from_urdf(
     check_movable(root, name)
     model = build_model(root, name)
     shapes, replacements = collision_geometry(model, root, name, folders, containers, corners)
-    compare(root, model, shapes, replacements)
     check_bodies(root, name, model, shapes)
+    compare(root, model, shapes, replacements)
     links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
     disabled = disabled_pairs(srdf, f"{name}, SRDF", links)
     _add_self_collision_pairs(model, shapes, root, disabled)
