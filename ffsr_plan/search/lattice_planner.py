@@ -83,7 +83,7 @@ class LatticePlanner(ABC):
         offsets, clearances = lattice.offsets[result.path], roadmap.path_clearances(result.path)
         length = roadmap.path_length(result.path)
         if request.refine is not False:
-            refined = refined_path(lattice, prover, offsets, clearances, objective)
+            refined = refined_path(lattice, prover, offsets, clearances, roadmap.nodes)
             if refined is not None:
                 offsets, clearances, length, objective, spent = refined
                 counts = counts.plus(spent)
