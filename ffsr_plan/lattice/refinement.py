@@ -32,6 +32,7 @@ _FINEST = 2**_LEVELS
 _ROUNDS = 8
 _CANDIDATES = 10  # paths evaluated in a round, where delta > 0
 _EXHAUSTIVE = 10**6
+_WORTH_A_ROUND = 1e-4  # relative gain after which another round is made, where delta > 0
 # offsets to either side of the path, by number of axes
 _REACH_OF_SHORTEST = (2, 2)  # at delta = 0
 _REACH = (2, 1)  # where delta > 0
@@ -157,8 +158,10 @@ class _Descent:
             reach: offsets to either side of the path.
             candidates: number of paths to evaluate at most.
         """
-        before = self.coordinates
+        before, value = self.coordinates, self.value
         self._take_best(before, step, np.full(len(self._rim), reach), candidates)
+        if self._problem.delta > 0.0 and self.value > value * (1.0 - _WORTH_A_ROUND):
+            return False
         return bool(np.any(np.abs(self.coordinates - before) == reach * step))
 
     def _take_best(self, middle: IntArray, step: int, reach: IntArray, candidates: int) -> None:
