@@ -27,6 +27,7 @@ from ffsr_plan.core.errors import (
     PlanNotVerified,
     PoseOutOfReach,
     StartInCollision,
+    UncheckedLinks,
     UnprovenPath,
     WorkerDied,
 )
@@ -51,6 +52,8 @@ from ffsr_plan.robots.collision_shapes import Replacement
 from ffsr_plan.robots.loading import load_robot, robot_names
 from ffsr_plan.robots.robot import Components, SpaceRobot
 from ffsr_plan.robots.summary import RobotSummary, robot_summaries
+from ffsr_plan.robots.urdf.inertias import Balanced
+from ffsr_plan.robots.urdf.joints import RateLimits
 from ffsr_plan.satellites.arms import arm_names
 from ffsr_plan.satellites.bus import Bus, Panel
 from ffsr_plan.satellites.composition import Mount, compose
@@ -74,6 +77,7 @@ __all__ = [
     "AntSystem",
     "AttitudeOutOfReach",
     "Axis",
+    "Balanced",
     "Bus",
     "Certificate",
     "Clearance",
@@ -108,6 +112,7 @@ __all__ = [
     "PostureAxis",
     "PostureTarget",
     "Problem",
+    "RateLimits",
     "Replacement",
     "Report",
     "Roadmap",
@@ -121,6 +126,7 @@ __all__ = [
     "States",
     "TimedPlan",
     "Trails",
+    "UncheckedLinks",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",

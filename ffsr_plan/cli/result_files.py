@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import write_files
 
@@ -64,6 +65,7 @@ def check_target(target: Path, force: bool) -> Path:
     Raises:
         InvalidInput: not a writable directory, or results that may not be replaced.
     """
+    checked_path("--out", target)
     existing = next(p for p in (target, *target.absolute().parents) if p.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK):
         raise InvalidInput("--out", str(target), "a directory that can be written")
@@ -85,7 +87,7 @@ def check_replacement(what: str, path: Path, force: bool) -> None:
         path: of the file.
         force: whether it may be replaced.
     """
-    if path.exists() and not force:
+    if checked_path(what, path).exists() and not force:
         raise InvalidInput(what, str(path), "a file that does not exist yet; --force replaces it")
 
 

@@ -7,12 +7,13 @@ import difflib
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, is_dataclass
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.formatting import Contact, closing_obstacles, contact_list, obstacle_name
 
 _MOST_CHARACTERS_OF_A_VALUE = 120
+_MOST_CHARACTERS = 600  # of the field, and of what is allowed
 
 
 class FfsrPlanError(Exception):
@@ -50,8 +51,13 @@ class InvalidInput(FfsrPlanError, ValueError):
     allowed: str
 
     def message(self) -> str:
-        """What is wrong, the value and what is allowed."""
-        return f"{self.what}: got {_shorten(self.value)}; allowed: {self.allowed}"
+        """What is wrong, the value and what is allowed, on one line."""
+        what, allowed = _on_one_line(self.what), _on_one_line(self.allowed)
+        return f"{what}: got {_shorten(self.value)}; allowed: {allowed}"
+
+
+class UncheckedLinks(UserWarning):
+    """A robot has links with mass but no shape, which nothing keeps clear of obstacles."""
 
 
 class PlanningError(FfsrPlanError):
@@ -170,22 +176,26 @@ class AttitudeOutOfReach(PlanningError):
     Attributes:
         wanted: angle from the start attitude to the goal attitude [rad].
         missed: angle from the attitude reached to the goal attitude [rad].
+        best: the `Plan` that misses it so, proven free all the same; None if no path could be
+            proven free.
         turned: the part of `wanted` that was reached, wanted - missed, at least 0 [rad].
     """
 
     wanted: float
     missed: float
+    best: Any = None
     turned: float = field(init=False)
 
     def __post_init__(self) -> None:
         self.turned = max(0.0, self.wanted - self.missed)
 
     def message(self) -> str:
-        """Both angles in degrees, and which settings may help."""
+        """All three angles in degrees, and which settings may help."""
         return (
             f"goal attitude out of reach: the best joint path rotates the base by "
-            f"{math.degrees(self.turned):.1f} of {math.degrees(self.wanted):.1f} degrees; more "
-            "divisions, wider or other posture axes, or another seed may increase this"
+            f"{math.degrees(self.turned):.1f} of {math.degrees(self.wanted):.1f} degrees and "
+            f"misses the goal by {math.degrees(self.missed):.2g} degrees; more divisions, wider or "
+            "more posture axes, or another seed may help"
         )
 
 
@@ -328,9 +338,17 @@ class PlanNotVerified(PlanningError):
 def unknown_name(what: str, value: object, names: Iterable[str]) -> InvalidInput:
     """An `InvalidInput` that lists the known names and suggests the most similar one."""
     known = list(names)
-    similar = difflib.get_close_matches(str(value), known, n=1, cutoff=0.5)
-    hint = f" (did you mean '{similar[0]}'?)" if similar else ""
+    similar = nearest_name(value, known)
+    hint = "" if similar is None else f" (did you mean '{similar}'?)"
     return InvalidInput(what, value, f"{', '.join(known) if known else 'nothing'}{hint}")
+
+
+def nearest_name(value: object, names: Iterable[str]) -> str | None:
+    """The name most similar to a value, whatever the case of the letters; None if none is."""
+    given = str(value)[:_MOST_CHARACTERS_OF_A_VALUE].casefold()
+    known = {name.casefold(): name for name in reversed(list(names))}
+    similar = difflib.get_close_matches(given, known, n=1, cutoff=0.5)
+    return known[similar[0]] if similar else None
 
 
 def _helping(advice: tuple[str, ...]) -> str:
@@ -338,6 +356,21 @@ def _helping(advice: tuple[str, ...]) -> str:
 
 
 def _shorten(value: object) -> str:
-    text = repr(value)
+    """The value as Python shows it, cut short; values that cannot be shown by their type."""
     most = _MOST_CHARACTERS_OF_A_VALUE
+    if isinstance(value, int) and value.bit_length() > 4 * most:
+        return f"a whole number of {value.bit_length()} bits"
+    try:
+        text = _on_one_line(repr(value))
+    except Exception:  # a `__repr__` may raise anything, for example for an integer too long
+        return f"an object of the class {type(value).__name__}"
     return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def _on_one_line(text: str) -> str:
+    """A text without line ends and control characters, its middle left out if it is long."""
+    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in " ".join(text.split()))
+    if len(shown) <= _MOST_CHARACTERS:
+        return shown
+    part = _MOST_CHARACTERS // 2
+    return f"{shown[:part]} ... {shown[-part:]}"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import errno
 import fcntl
+import io
 import os
 import re
 import secrets
@@ -23,6 +24,7 @@ from typing import BinaryIO
 
 from ffsr_plan.core.errors import InvalidInput
 
+_LARGEST_FILE = 256_000_000  # [bytes] of a text; what is made of it takes several times as much
 _PARTIAL = re.compile(r"\.ffsr-plan-[0-9a-f]{16}\.part")
 _STALE_AFTER = 60.0  # [s] since a temporary file was last written to
 _STREAMS = re.compile(r"/dev/(std(in|out|err)|fd/\d+)|/proc/.*")
@@ -40,12 +42,34 @@ def read_text(what: str, path: Path, encoding: str = "utf-8") -> str:
         Its text, line ends as newlines.
 
     Raises:
-        InvalidInput: a file that cannot be read or is not UTF-8.
+        InvalidInput: a file that cannot be read, is not UTF-8, has more than 256 MB or is a pointer
+            of Git LFS.
     """
     try:
-        return path.read_text(encoding=encoding)
+        content = bytearray()
+        with path.open("rb") as file:
+            while part := file.read(2**20):  # in parts: a device may have no end
+                content += part
+                if len(content) > _LARGEST_FILE:
+                    raise ValueError("more than 256 MB")
+        if is_lfs_pointer(bytes(content[:64])):
+            allowed = "the file itself, which `git lfs pull` fetches; this is a pointer of Git LFS"
+            raise InvalidInput(what, str(path), allowed)
+        with io.TextIOWrapper(io.BytesIO(content), encoding=encoding) as text:
+            return text.read()
+    except InvalidInput:
+        raise
     except (OSError, ValueError) as error:  # a UnicodeDecodeError is a ValueError
         raise InvalidInput(what, str(path), f"a readable UTF-8 file ({_reason(error)})") from None
+
+
+def is_lfs_pointer(content: bytes) -> bool:
+    """Whether a file is a pointer that Git LFS leaves in place of a file not yet fetched.
+
+    Args:
+        content: bytes of the file.
+    """
+    return content.startswith(b"version https://git-lfs.github.com/spec/")
 
 
 def write_text(what: str, path: Path, text: str) -> None:

@@ -11,7 +11,8 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.errors import unknown_name
+from ffsr_plan.core.checks import one_of
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.rotations import IDENTITY, angle_rate_matrix, to_angles
 from ffsr_plan.robots.kinematics import turned
 from ffsr_plan.robots.robot import SpaceRobot
@@ -34,7 +35,7 @@ def connection(robot: SpaceRobot, q: ArrayLike) -> Array:
     Raises:
         InvalidInput: a configuration that the robot does not have.
     """
-    q = robot.check_configuration("q", q)
+    q = _configuration(robot, q)
     return connections(robot, robot.joint_values(q)[None])[0]
 
 
@@ -50,7 +51,18 @@ def connections(robot: SpaceRobot, joint_values: Array) -> Array:
     """
     if robot.nd == 0:
         return np.zeros((len(joint_values), 3, 0))
-    angular = angular_maps(robot, joint_values)
+    return connections_of(angular_maps(robot, joint_values))
+
+
+def connections_of(angular: Array) -> Array:
+    """The mechanical connection from the maps to angular momentum.
+
+    Args:
+        angular: (N, 3, 3 + nd) see `angular_maps`.
+
+    Returns:
+        (N, 3, nd) matrices A(theta).
+    """
     return np.asarray(-np.linalg.solve(angular[:, :, :3], angular[:, :, 3:]), dtype=np.float64)
 
 
@@ -107,7 +119,7 @@ def attitude_rate_map(robot: SpaceRobot, q: ArrayLike) -> Array:
     Raises:
         InvalidInput: beta = +-90 degrees, where the ZYX angles are singular.
     """
-    q = robot.check_configuration("q", q)
+    q = _configuration(robot, q)
     rates = np.linalg.solve(angle_rate_matrix(to_angles(q[3:7])), connection(robot, q))
     return np.asarray(rates, dtype=np.float64)
 
@@ -130,10 +142,9 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
     Raises:
         InvalidInput: unknown frame, with the nearest name.
     """
-    q = robot.check_configuration("q", q)
+    q = _configuration(robot, q)
     model = robot.model
-    if not model.existFrame(frame):
-        raise unknown_name("frame", frame, [f.name for f in model.frames])
+    one_of("frame", frame, [f.name for f in model.frames])
     data = model.createData()
     pin.computeCentroidalMap(model, data, q)
     momentum_map = np.array(data.Ag)
@@ -142,3 +153,10 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
     )
     base_rate = np.linalg.solve(momentum_map[:, :6], momentum_map[:, 6:])
     return jacobian[:, 6:] - jacobian[:, :6] @ base_rate
+
+
+def _configuration(robot: SpaceRobot, q: ArrayLike) -> Array:
+    """(nq,) a configuration that the robot has."""
+    if not isinstance(robot, SpaceRobot):
+        raise InvalidInput("robot", robot, "a SpaceRobot")
+    return robot.check_configuration("q", q)

@@ -5,20 +5,24 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
 
 from ffsr_plan.core.checks import number, one_of, truth, whole_number
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.errors import AttitudeOutOfReach, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.memory_estimate import check_colonies
 from ffsr_plan.lattice.refinement import refined_path
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.plans.planner_registry import Planner, planner_of
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
-from ffsr_plan.search.records import OnCycle, SearchRequest
+from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
+
+_MOST_WORKERS = 256  # each is a process of some hundred megabytes
 
 
 def plan(
@@ -58,7 +62,8 @@ def plan(
         InvalidInput: an argument that is not allowed, or a planner that cannot solve the problem.
         StartInCollision, GoalInCollision: with all links and obstacles that touch.
         NoPath: the lattice holds no free path, with the layer that cannot be passed.
-        AttitudeOutOfReach: the arms were not found to bring about the goal's attitude.
+        AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; `best` is
+            the plan that misses it least.
         UnprovenPath: with posture axes, the path found could not be proven free.
         PlanningError: no path was found in time.
         WorkerDied: a worker process ended without a result.
@@ -70,17 +75,18 @@ def plan(
     chosen.refuse(problem)
     rng, seed_number = _generator(seed)
     request = _request(chosen, refine, colonies, workers, time_limit, on_cycle)
-    with Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE))) as interruption:
-        solution = chosen.solve(problem, rng, interruption.received_by(request))
+    check_colonies(problem, request.colonies)
+    certified = partial(_certified, problem, chosen, seed_number, begin)
+    try:
+        with Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE))) as interruption:
+            solution = chosen.solve(problem, rng, interruption.received_by(request))
+    except AttitudeOutOfReach as error:
+        if isinstance(error.best, Solution):
+            error.best = certified(error.best)
+        raise
     if interruption.pressed:
         solution = solution._replace(interrupted=True)
-    return Plan(
-        problem=problem,
-        planner=chosen,
-        seed=seed_number,
-        seconds=time.perf_counter() - begin,
-        **solution._asdict(),
-    )
+    return certified(solution)
 
 
 def refine(plan: Plan) -> Plan:
@@ -139,9 +145,22 @@ def _request(
     return SearchRequest(
         refine=None if refine is None else truth("refine", refine),
         colonies=count,
-        workers=whole_number("workers", workers, at_least=1),
+        workers=whole_number("workers", workers, at_least=1, at_most=_MOST_WORKERS),
         time_limit=seconds,
         on_cycle=on_cycle,
+    )
+
+
+def _certified(
+    problem: Problem, planner: Planner, seed: int | None, begin: float, solution: Solution
+) -> Plan:
+    """The plan of a solution; `begin` is when it was asked for, by `time.perf_counter`."""
+    return Plan(
+        problem=problem,
+        planner=planner,
+        seed=seed,
+        seconds=time.perf_counter() - begin,
+        **solution._asdict(),
     )
 
 

@@ -8,17 +8,22 @@ from numpy.typing import ArrayLike
 from ffsr_plan.collision.contacts import goal_in_collision
 from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, whole_number
+from ffsr_plan.core.checks import FARTHEST, finite_array, one_of, whole_number
 from ffsr_plan.core.errors import (
     GoalInCollision,
     HeldBase,
     InvalidInput,
     PoseOutOfReach,
-    unknown_name,
 )
 from ffsr_plan.core.rotations import angle_between, from_angles, matrix
 from ffsr_plan.dynamics.actuation_mode import Mode
-from ffsr_plan.problem.pose_error import PoseTarget, end_configuration, pose_error, pose_jacobian
+from ffsr_plan.problem.pose_error import (
+    PoseTarget,
+    end_configuration,
+    end_of_path,
+    pose_error,
+    pose_jacobian,
+)
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
@@ -27,7 +32,9 @@ POSE_TOLERANCE = 1e-8
 _DESCENTS = 16
 _COARSE, _FINE = (1e-2, 80), (1e-15, 200)
 # relative change of the squared error at which a descent ends, and its most evaluations
-_HALF_TURN = np.pi - 1e-6  # [rad] most that a continuous joint rotates; pi has two directions
+_TURN_ROUNDING = 1e-9  # of a turn
+_BEYOND_HALF_TURN = np.pi + 0.5
+# [rad] to which descents may rotate a continuous joint: half a turn itself lies well inside
 
 
 def inverse_kinematics(
@@ -45,10 +52,14 @@ def inverse_kinematics(
 ) -> Array:
     """A goal configuration at which a frame has the wanted pose, within the joint limits.
 
-    A plan from `start` ends with this configuration on a lattice without posture axes; with posture
-    axes, `Problem(..., reach_attitude=True)` brings the base to its attitude. The search is local
-    (damped least squares): from the start's joint values first, then from random ones, until the
-    pose is met.
+    A plan from `start` ends with this configuration on a lattice without posture axes. With posture
+    axes it takes `Problem(..., reach_attitude=True)`, which `Problem.reaching` and scenario files
+    set: without it the base arrives at another attitude, and the frame misses its pose.
+
+    The search is local (damped least squares): from the start's joint values first, then from
+    random ones, until the pose is met. A revolute joint whose limits span more than a turn goes the
+    shorter way: by whole turns less where wheels hold the base; where it reacts to them, a pose at
+    which no joint goes more than half a turn is preferred.
 
     Args:
         robot: the robot.
@@ -111,8 +122,7 @@ def pose_target(
         raise InvalidInput("robot", robot, "a SpaceRobot")
     if robot.nd == 0:
         raise InvalidInput("robot", robot.name, "a robot with joints")
-    if not isinstance(frame, str) or not robot.model.existFrame(frame):
-        raise unknown_name("frame", frame, [f.name for f in robot.model.frames])
+    one_of("frame", frame, [f.name for f in robot.model.frames])
     if base_position is not None and mode.floats:
         raise InvalidInput(
             "base_position",
@@ -146,21 +156,30 @@ def pose_target(
 def _solution(
     frame: str, descent: _Descent, collides: _CollisionCheck, rng: np.random.Generator
 ) -> Array:
-    """(nq,) the first end configuration found that meets the pose and is free of collision."""
+    """(nq,) the first end configuration found that meets the pose and is free of collision.
+
+    One in which a joint goes a whole turn out of its way is returned only if no other is found.
+    """
     collision: Array | None = None
-    best, least = descent.no_change, np.inf
+    best, least, detour = descent.no_change, np.inf, None
     for attempt in range(_DESCENTS):
         first = descent.no_change if attempt == 0 else descent.random_change(rng)
         change = descent.run(first, _COARSE)
         error = float(np.linalg.norm(descent.error(change)))
         if error < least:
             best, least = change, error
-        if error < POSE_TOLERANCE:
-            end = descent.end(change)
-            if not collides(end):
+        for candidate in descent.solutions(change):
+            end = descent.end(candidate)
+            if collides(end):
+                collision = end if collision is None else collision
+            elif not descent.turns(candidate).any():
                 return frozen(end)
-            collision = end if collision is None else collision
+            elif detour is None:
+                detour = candidate
+    if detour is not None:
+        return frozen(descent.end(detour))
     best = descent.run(best, _FINE)
+    best = next(iter(descent.solutions(best)), best)
     rest, q = descent.error(best), descent.end(best)
     if np.linalg.norm(rest) < POSE_TOLERANCE:
         if collision is None and not collides(q):
@@ -257,9 +276,10 @@ class _Descent:
         robot = target.robot
         self._target, self._begin = target, robot.joint_values(target.start)
         continuous = np.isinf(robot.upper)
-        self._low = np.where(continuous, -_HALF_TURN, robot.lower - self._begin)
-        self._high = np.where(continuous, _HALF_TURN, robot.upper - self._begin)
+        self._low = np.where(continuous, -_BEYOND_HALF_TURN, robot.lower - self._begin)
+        self._high = np.where(continuous, _BEYOND_HALF_TURN, robot.upper - self._begin)
         self._free = self._high - self._low > 1e-9  # the others are fixed by their limits
+        self._turning = ~robot.prismatic
 
     @property
     def no_change(self) -> Array:
@@ -281,7 +301,7 @@ class _Descent:
             return np.clip(first, low, high)
         margin = 1e-6 * (high - low)  # the solver needs an interior point
         result = least_squares(
-            lambda values: self.error(self._whole(values)),
+            lambda values: self._error_of_path(self._whole(values)),
             np.clip(first, low + margin, high - margin)[free],
             lambda values: self._jacobian(self._whole(values))[:, free],
             (low[free], high[free]),
@@ -292,11 +312,38 @@ class _Descent:
         )
         return self._whole(result.x)
 
+    def turns(self, change: Array) -> Array:
+        """(nd,) whole turns by which a revolute joint may change less, within its limits."""
+        whole = 2.0 * np.pi
+        turns = np.where(self._turning, np.rint(change / whole), 0.0)
+        least = np.ceil((change - self._high) / whole - _TURN_ROUNDING)
+        most = np.floor((change - self._low) / whole + _TURN_ROUNDING)
+        return np.asarray(np.clip(turns, np.minimum(least, 0.0), np.maximum(most, 0.0)))
+
+    def solutions(self, change: Array) -> list[Array]:
+        """The changes (nd,) of `change`, with and without needless turns, that meet the pose.
+
+        Those without turns come first. A whole turn leaves all links where they are, but not a base
+        that reacts to it; then the pose is approached again from the change without the turns.
+        """
+        if np.linalg.norm(self._error_of_path(change)) >= POSE_TOLERANCE:
+            return []
+        changes, turns = [change], self.turns(change)
+        if turns.any():
+            less = np.clip(change - 2.0 * np.pi * turns, self._low, self._high)
+            reacts = self._target.mode.attitude_reacts
+            changes.insert(0, self.run(less, _COARSE) if reacts else less)
+        return [each for each in changes if np.linalg.norm(self.error(each)) < POSE_TOLERANCE]
+
     def end(self, change: Array) -> Array:
         return end_configuration(self._target, self._begin + change)
 
     def error(self, change: Array) -> Array:
         return pose_error(self._target, self.end(change))
+
+    def _error_of_path(self, change: Array) -> Array:
+        """Like `error`, but smooth where a continuous joint goes beyond half a turn."""
+        return pose_error(self._target, end_of_path(self._target, self._begin, change))
 
     def _whole(self, values: Array) -> Array:
         change: Array = np.clip(0.0, self._low, self._high)

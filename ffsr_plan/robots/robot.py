@@ -12,11 +12,11 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternion
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, equal_by_content, frozen
+from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
-from ffsr_plan.core.read_only_dict import ReadOnlyDict
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
 from ffsr_plan.core.text_files import write_files
 from ffsr_plan.robots.collision_shapes import (
@@ -26,8 +26,13 @@ from ffsr_plan.robots.collision_shapes import (
 from ffsr_plan.robots.kinematics import Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import named_postures
+from ffsr_plan.robots.urdf.inertias import Balanced
+from ffsr_plan.robots.urdf.joints import RateLimits
+
+_HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
 
 
+@equal_by_content
 class Components(NamedTuple):
     """Parts of one configuration, or of N.
 
@@ -46,6 +51,8 @@ class Components(NamedTuple):
 class SpaceRobot:
     """A free-flying robot. Made by `load_robot` or `compose`; everything in it is read-only.
 
+    Two robots are equal if they were made from the same texts, meshes and options.
+
     A configuration `q` is Pinocchio's vector (nq,): base position (3) [m] and quaternion
     (x, y, z, w) of the base in the world, then the joints. `joint values` (nd,) are plain numbers,
     one per joint in Pinocchio's order [rad, or m where prismatic]. This holds for continuous joints
@@ -53,7 +60,8 @@ class SpaceRobot:
 
     Attributes:
         name: name of the robot.
-        urdf: the URDF text that the robot was made from.
+        urdf: what was read of the URDF, as a URDF of its own: known elements only, every number
+            with all its digits, orientations as roll, pitch and yaw.
         model: Pinocchio model, the root link on a free-flyer joint.
         collision_model: collision shapes and the pairs checked for self-collision: all pairs except
             those of adjacent links and those that the SRDF exempts.
@@ -65,10 +73,18 @@ class SpaceRobot:
             URDF, before its scale [m]. With these the robot can be made without the mesh files.
         srdf: the SRDF text; empty if there is none.
         disabled_pairs: pairs of links that the SRDF allows to touch, sorted.
+        unchecked_links: links with a mass or a visual shape but no collision shape: nothing keeps
+            them clear of obstacles, and `Plan.verify` does not check them either.
+        balanced: links whose inertia tensor was balanced; see `load_robot`.
+        rate_limits: limits of acceleration and jerk by joint, from URDF 1.2.
         joint_names: (nd) names of the joints.
         lower: (nd,) lower joint limits [rad or m], -inf for continuous joints.
         upper: (nd,) upper joint limits [rad or m], inf for continuous joints.
         prismatic: (nd,) booleans, true where the joint value is in metres.
+        acceleration: (nd,) limits of the joints' acceleration [rad/s^2 or m/s^2], from URDF 1.2,
+            the lesser of its `acceleration` and `deceleration`; inf where the URDF has none.
+        jerk: (nd,) limits of the joints' jerk [rad/s^3 or m/s^3], from URDF 1.2; inf where the URDF
+            has none.
         postures: joint values [rad or m] by joint, by name of the posture, from the group states of
             the SRDF. A posture may list some of the joints only.
     """
@@ -84,10 +100,15 @@ class SpaceRobot:
     meshes: Mapping[str, Array] = field(default_factory=dict)
     srdf: str = ""
     disabled_pairs: tuple[tuple[str, str], ...] = ()
+    unchecked_links: tuple[str, ...] = ()
+    balanced: tuple[Balanced, ...] = ()
+    rate_limits: Mapping[str, RateLimits] = field(default_factory=dict, repr=False)
     joint_names: tuple[str, ...] = field(init=False)
     lower: Array = field(init=False)
     upper: Array = field(init=False)
     prismatic: NDArray[np.bool_] = field(init=False)
+    acceleration: Array = field(init=False)
+    jerk: Array = field(init=False)
     postures: Mapping[str, Mapping[str, float]] = field(init=False)
     _slots: tuple[tuple[int, int], ...] = field(init=False, repr=False)  # index and length in q
 
@@ -100,11 +121,14 @@ class SpaceRobot:
         names = tuple(self.model.names[j] for j in range(2, self.model.njoints))
         prismatic = [j.shortname().startswith("JointModelP") for j in joints]
         limits = dict(zip(names, zip(lower, upper, strict=True), strict=True))
+        rates = [self.rate_limits.get(name, RateLimits(np.inf, np.inf)) for name in names]
         derived = {
             "joint_names": names,
             "lower": frozen(np.array(lower, dtype=np.float64)),
             "upper": frozen(np.array(upper, dtype=np.float64)),
             "prismatic": frozen(np.array(prismatic, dtype=np.bool_)),
+            "acceleration": frozen(np.array([r.acceleration for r in rates], dtype=np.float64)),
+            "jerk": frozen(np.array([r.jerk for r in rates], dtype=np.float64)),
             "postures": ReadOnlyDict(
                 {
                     name: ReadOnlyDict(values)
@@ -117,6 +141,19 @@ class SpaceRobot:
         }
         for attribute, value in derived.items():
             object.__setattr__(self, attribute, value)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SpaceRobot):
+            return NotImplemented
+        return self is other or self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.urdf, self.srdf))
+
+    def _content(self) -> object:
+        """All that the robot was made from."""
+        made_from = (self.name, self.urdf, self.srdf, self.package_dirs, self.containers)
+        return content((*made_from, self.meshes))
 
     def __repr__(self) -> str:
         return (
@@ -131,6 +168,8 @@ class SpaceRobot:
             "links": str(len(self.link_names)),
             "postures": ", ".join(self.postures) or "none",
         }
+        if self.unchecked_links:
+            rows["not checked"] = ", ".join(self.unchecked_links)
         return html_table(f"SpaceRobot {self.name}", rows)
 
     @property
@@ -280,7 +319,8 @@ class SpaceRobot:
     def joint_change(self, begin: Array, end: Array) -> Array:
         """Change of the joint values from one configuration to another.
 
-        A continuous joint takes the shorter direction; a rotation by pi is positive.
+        A continuous joint takes the shorter direction; half a turn is positive, also if rounding
+        makes it 1e-9 rad more or less.
 
         Args:
             begin: (nq,) first configuration.
@@ -291,6 +331,7 @@ class SpaceRobot:
         """
         change = self.joint_values(end) - self.joint_values(begin)
         wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
+        wrapped = np.where(wrapped < -np.pi + _HALF_TURN_BAND, wrapped + 2.0 * np.pi, wrapped)
         return np.where(np.isinf(self.upper), wrapped, change)
 
     def check_configuration(self, what: str, q: ArrayLike) -> Array:
@@ -301,7 +342,8 @@ class SpaceRobot:
             q: (nq,) configuration.
 
         Returns:
-            (nq,) read-only copy, its quaternion normalised.
+            (nq,) read-only copy; quaternion, and cosine and sine, normalised. What has been
+            checked once is returned bit for bit.
 
         Raises:
             InvalidInput: wrong length, not finite, a quaternion (or cosine and sine of a continuous
@@ -311,10 +353,13 @@ class SpaceRobot:
         finite_array(f"{what} (base position)", checked[:3], (3,), FARTHEST)
         checked[3:7] = unit_quaternion(f"{what} (base quaternion)", checked[3:7])
         for name, (i, nq) in zip(self.joint_names, self._slots, strict=True):
-            if nq == 2 and abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
+            if nq == 1:
+                continue
+            if abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
                 raise InvalidInput(
                     f"{what} (joint {name})", checked[i : i + 2].tolist(), "cosine and sine"
                 )
+            checked[i : i + 2] = normalised(checked[i : i + 2])
         values = self.joint_values(checked)
         self.check_limits(what, values)
         return frozen(checked)
@@ -348,9 +393,7 @@ class SpaceRobot:
         Raises:
             InvalidInput: not a `.urdf` path, or one that cannot be written.
         """
-        target = Path(path)
-        if target.suffix != ".urdf":
-            raise InvalidInput("path", str(path), "a path that ends in .urdf")
+        target = checked_path("path", path, ".urdf")
         files: dict[Path, str | bytes] = {target: self.urdf}
         if self.srdf:
             files[target.with_suffix(".srdf")] = self.srdf

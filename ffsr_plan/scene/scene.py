@@ -12,8 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, content
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, truth, whole_number
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.meshes import mesh_files
@@ -21,10 +23,14 @@ from ffsr_plan.meshes.sphere_cover import cover
 from ffsr_plan.scene import sphere_files
 from ffsr_plan.scene.sphere_tree import SphereTree, sphere_tree
 
+_LARGEST_SCALE = 1e9
+
 
 @dataclass(frozen=True, eq=False, init=False)
 class Scene:
     """Sphere obstacles. `scene + other` holds the spheres of both, those of `scene` first.
+
+    Two scenes are equal if they hold the same spheres in the same order.
 
     Attributes:
         centers: (N, 3) centres in the world [m].
@@ -58,8 +64,9 @@ class Scene:
         Raises:
             InvalidInput: shapes that do not fit, not finite, or a radius <= 0, with its index.
         """
-        if np.size(centers) == 0:  # accept [] for "no obstacle"
-            centers = np.zeros((0, 3))
+        check_memory(
+            "scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
+        )
         c = finite_array("scene centers", centers, (-1, 3), FARTHEST)
         r = finite_array("scene radii", radii, (-1,))
         if len(c) != len(r):
@@ -134,7 +141,8 @@ class Scene:
             InvalidInput: a mesh that cannot be read, is not closed, or is too large for the excess.
         """
         if isinstance(mesh, (str, Path)):
-            corners = mesh_files.surface(str(Path(mesh).absolute()), [], "mesh")
+            file = checked_path("mesh", mesh)
+            corners = mesh_files.surface(str(file.absolute()), [], "mesh")
         elif hasattr(mesh, "triangles"):
             corners = finite_array("mesh, triangles", mesh.triangles, (-1, 3, 3))
         else:
@@ -142,9 +150,10 @@ class Scene:
         if len(corners) == 0:
             raise InvalidInput("mesh", "no triangle", "a mesh with triangles")
         axes = rotations.matrix(rotations.from_angles(finite_array("attitude", attitude, (3,))))
-        triangles = number("scale", scale, above=0.0) * corners @ axes.T
-        triangles = triangles + finite_array("position", position, (3,), FARTHEST)
-        excess = number("mesh, excess", excess, above=0.0)
+        factor = number("scale", scale, above=0.0, at_most=_LARGEST_SCALE)
+        triangles = factor * corners @ axes.T + finite_array("position", position, (3,), FARTHEST)
+        finite_array("mesh, corners in the world", triangles, (-1, 3, 3), FARTHEST)
+        excess = number("mesh, excess", excess, above=0.0, at_most=FARTHEST)
         spheres = cover(triangles, excess, truth("inside", inside))
         name = Path(mesh).name if isinstance(mesh, (str, Path)) else "mesh"
         return cls(spheres.centers, spheres.radii, excess).named(name)
@@ -197,6 +206,17 @@ class Scene:
             (*self._all_sources(), *other._all_sources()),
         )
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> object:
+        return content((self.centers, self.radii, self.excess, self.sources))
+
     def _all_sources(self) -> tuple[tuple[str, int], ...]:
         return self.sources or ((("", len(self)),) if len(self) else ())
 
@@ -218,6 +238,11 @@ class Scene:
 
     def __len__(self) -> int:
         return len(self.radii)
+
+
+def _rows(values: object) -> int:
+    rows = isinstance(values, (list, tuple)) or (isinstance(values, np.ndarray) and values.ndim)
+    return len(values) if rows else 0  # type: ignore[arg-type]
 
 
 def _checked_sources(

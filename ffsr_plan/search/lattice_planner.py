@@ -10,6 +10,7 @@ import numpy as np
 from ffsr_plan.core.arrays import frozen
 from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate, Counts
+from ffsr_plan.lattice.memory_estimate import check_lattice
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.refinement import refined_path
 from ffsr_plan.lattice.roadmap import Roadmap
@@ -24,10 +25,12 @@ class LatticePlanner(ABC):
     Attributes:
         name: the planner's name in scenario and plan files.
         exact: whether the search returns the lattice optimum.
+        bytes_per_edge: memory of the search for each edge of the lattice [bytes].
     """
 
     name: ClassVar[str]
     exact: ClassVar[bool] = False
+    bytes_per_edge: ClassVar[float]
 
     @abstractmethod
     def search(
@@ -71,6 +74,7 @@ class LatticePlanner(ABC):
             WorkerDied: a worker process ended without a result.
         """
         self.refuse(problem)
+        check_lattice(problem, self.bytes_per_edge, getattr(self, "ants", 0))
         roadmap = Roadmap(problem)
         if self.exact:  # it has no path before it ends
             result, counts = self.search(roadmap, rng), roadmap.counts()

@@ -88,3 +88,15 @@ def test_messages_say_what_happened(error, message):
 def test_the_most_similar_name_is_suggested():
     error = errors.unknown_name("robot", "pont", ["point", "satellite"])
     assert "did you mean 'point'?" in str(error)
+
+
+def test_a_message_is_one_short_line_whatever_it_quotes():
+    for what, value, allowed in (
+        ("a\nb\x1b[31m", "c\r\nd\x00", "one\n  two"),
+        ("n" * 9000, ["v"] * 9000, "a" * 9000),
+        ("count", -(10**9000), "less"),
+    ):
+        message = str(errors.InvalidInput(what, value, allowed))
+        assert message.isprintable()
+        assert len(message) < 1500
+    assert str(errors.InvalidInput("a\nb", "c", "d")) == "a b: got 'c'; allowed: d"

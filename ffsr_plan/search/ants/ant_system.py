@@ -40,14 +40,15 @@ class AntSystem(LatticePlanner):
     """
 
     name: ClassVar[str] = "ant-system"
+    bytes_per_edge: ClassVar[float] = 40.0  # pheromone, roulettes, ants and what they lay
 
     ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
-    cycles: Annotated[int, WholeNumber(at_least=1)] = 242
-    alpha: Annotated[float, Number(at_least=0.0)] = 1.0
-    beta: Annotated[float, Number(at_least=0.0)] = 5.0
+    cycles: Annotated[int, WholeNumber(at_least=1, at_most=1_000_000)] = 242
+    alpha: Annotated[float, Number(at_least=0.0, at_most=40.0)] = 1.0
+    beta: Annotated[float, Number(at_least=0.0, at_most=40.0)] = 5.0
     rho: Annotated[float, Number(above=0.0, below=1.0)] = 0.526
-    Q: Annotated[float, Number(above=0.0)] = 320.0
-    C: Annotated[float, Number(above=0.0)] = 10.0
+    Q: Annotated[float, Number(at_least=1e-9, at_most=1e9)] = 320.0
+    C: Annotated[float, Number(at_least=1e-9, at_most=1e9)] = 10.0
 
     def search(
         self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None

@@ -46,13 +46,14 @@ class MaxMinAntSystem(LatticePlanner):
     """
 
     name: ClassVar[str] = "max-min-ant-system"
+    bytes_per_edge: ClassVar[float] = 50.0  # those of the Ant System and visibility
 
     ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
-    cycles: Annotated[int, WholeNumber(at_least=1)] = 242
+    cycles: Annotated[int, WholeNumber(at_least=1, at_most=1_000_000)] = 242
     beta: Annotated[float, Number(at_least=0.0, at_most=40.0)] | None = None
     rho: Annotated[float, Number(above=0.0, below=1.0)] = 0.7
-    improved: Annotated[int, WholeNumber(at_least=0)] = 1
-    patience: Annotated[int, WholeNumber(at_least=0)] = 20
+    improved: Annotated[int, WholeNumber(at_most=100_000)] = 1
+    patience: Annotated[int, WholeNumber(at_most=1_000_000)] = 20
     cost_aware: Annotated[bool, Truth()] = True
     pheromone: Annotated[bool, Truth()] = True
 

@@ -95,7 +95,7 @@ def trial_cost(
             compose(change, old[i], new[i])
     else:
         new[last:] = old[last:]
-    total = attitude_cost(grid.reach_attitude, new[m], grid.goal, weight)
+    total = attitude_cost(grid.reach_attitude, new[m], grid.goal, grid.free_error, weight)
     for i in range(m):
         total += trial.lengths[i] if first - 1 <= i < last else current.lengths[i]
     for i in range(1, first):

@@ -24,6 +24,7 @@ from ffsr_plan.search.postures.posture_lattice_arrays import without_edge
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, Trails
 
 _BEST_LAYS_EVERY = 3  # cycles; in the others the best ant of the cycle lays pheromone
+_DEMANDED_WEIGHT = 4.0  # factor of the cost of a radian after a path that could not be corrected
 _LEAST_GAIN = 1e-9  # [m] by which a path has to be better to count as better
 
 
@@ -63,6 +64,7 @@ class PostureColony:
     ) -> None:
         self._lattice, self._settings, self._rng = lattice, settings, rng
         self.grid = grid
+        self._weights = np.array(settings.attitude_weights, dtype=np.float64)
         m, postures, steps = grid.step_rotations.shape[:3]
         offsets = len(grid.across)
         self._cost_to_go = cost_to_go(grid, _guiding_attitudes(lattice))
@@ -82,12 +84,20 @@ class PostureColony:
 
     def cost(self, path: IntArray) -> float:
         """Cost of a path (m + 1, 2) [m]."""
-        weight = float(self._settings.attitude_weights[1])
-        return float(path_cost(self.grid, uncosted_path(path), weight))
+        return float(path_cost(self.grid, uncosted_path(path), float(self._weights[1])))
 
     def refuse(self, layer: int, path: IntArray) -> None:
         """Exclude the edge by which a path (m + 1, 2) leaves a layer."""
         self.grid = without_edge(self.grid, layer, path)
+
+    def demand(self, free_error: float) -> None:
+        """Let an error of the goal attitude cost more: four times as much, from `free_error` on.
+
+        Args:
+            free_error: what costs nothing [rad], unless less costs something already.
+        """
+        self.grid = self.grid._replace(free_error=min(self.grid.free_error, free_error))
+        self._weights = _DEMANDED_WEIGHT * self._weights
 
     def annealed(
         self,
@@ -106,8 +116,7 @@ class PostureColony:
             cold: temperature at the end [m].
             stop_requested: asked several times a second; whether to end with what there is.
         """
-        weights = np.array(self._settings.attitude_weights)
-        return self._shifted(path, shifts, hot, cold, weights, stop_requested)
+        return self._shifted(path, shifts, hot, cold, self._weights, stop_requested)
 
     def _shifted(
         self,
@@ -127,7 +136,7 @@ class PostureColony:
     def _run_ants(self, monitor: SearchMonitor) -> bool:
         """Run cycles until none improves the path any more; whether the monitor ended them."""
         settings, stale = self._settings, 0
-        late_weights = np.full(2, settings.attitude_weights[1])
+        late_weights = np.full(2, self._weights[1])
         for _ in range(settings.cycles):
             paths, costs = self._tours()
             if not paths:

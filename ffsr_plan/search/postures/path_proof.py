@@ -20,9 +20,11 @@ from ffsr_plan.proof.prover import Prover
 from ffsr_plan.search.postures.attitude_correction import corrected
 from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
 
-ATTITUDE_TOLERANCE = math.radians(1.0)
-"""Largest goal attitude error [rad] of a plan whose final correction could not be proven."""
-_CORRECTIONS = 6  # attempts, each without the corners that the one before could not prove
+GOAL_TOLERANCE = 1e-8
+"""Largest goal attitude error [rad] of a plan: 100 m away from the base 1e-6 m."""
+CORRECTABLE = math.radians(1.0)
+"""Largest goal attitude error [rad] of a path on the lattice whose correction is attempted."""
+_CORRECTIONS = 12  # attempts, each without the corners that the one before could not prove
 
 
 class RefusedEdge(NamedTuple):
@@ -62,7 +64,7 @@ class PathProof(NamedTuple):
     @property
     def holds(self) -> bool:
         """Whether all edges are proven free and the goal attitude is reached."""
-        return not self.refused and self.attitude_error <= ATTITUDE_TOLERANCE
+        return not self.refused and self.attitude_error <= GOAL_TOLERANCE
 
 
 def corners(lattice: PostureLattice, path: IntArray) -> tuple[Array, Array]:
@@ -113,8 +115,12 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
     """The path with its goal attitude error closed where that can be proven; and Coal queries.
 
     Where the corrected path is refused, the corners beside the refused edge are left unchanged and
-    the others corrected. Without a proven correction the path is returned as it is.
+    the others corrected. If that is refused too, the attitude there has to stay, so that the
+    corners behind it are corrected only. Without a proven correction the path is returned as it is,
+    and so is one that is not free, needs no correction or misses the attitude by too much.
     """
+    if proof.refused or not GOAL_TOLERANCE < proof.attitude_error <= CORRECTABLE:
+        return proof, 0
     problem, motion = lattice.problem, proof.motion
     directions = displacements(problem, lattice.base.nominal.joint_values)
     held = np.zeros(len(motion.positions), dtype=np.bool_)
@@ -128,10 +134,13 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
             break
         other = prove_path(lattice, motion.positions, joints)
         queries += other.prover.queries
-        if other.holds and other.attitude_error < proof.attitude_error:
+        if other.holds:
             return other, queries
         for edge in other.refused:  # the original path has been proven there
-            held[max(edge.layer - 1, 0) : edge.layer + 3] = True
+            beside = slice(max(edge.layer - 1, 0), edge.layer + 3)
+            if held[beside].all():
+                beside = slice(edge.layer + 3)
+            held[beside] = True
     return proof, queries
 
 
