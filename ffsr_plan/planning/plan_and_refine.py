@@ -41,7 +41,7 @@ def plan(
 
     Ctrl-C and `time_limit` end the search early; the best plan so far is returned, marked as
     `interrupted`. Ctrl-C raises KeyboardInterrupt where there is no plan yet, when it is pressed
-    again, and in a call of `plan` that begins within 2 s of such a return, so that a loop ends.
+    again, and in a call of `plan` that begins within 2 s of such a return: a loop ends.
 
     Args:
         problem: what to plan.
@@ -56,19 +56,17 @@ def plan(
         time_limit: [s] for the search, from its beginning. The set-up of the lattice before it, the
             optimum and the refinement after it are not cut short.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.
-        on_interrupt: what Ctrl-C does during the search: `return` the best plan so far, or `raise`
-            KeyboardInterrupt.
+        on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
 
     Raises:
         InvalidInput: an argument that is not allowed, or a planner that cannot solve the problem.
-        StartInCollision, GoalInCollision: with link, obstacle and depth.
+        StartInCollision, GoalInCollision: with all links and obstacles that touch.
         NoPath: the lattice holds no free path, with the layer that cannot be passed.
         AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; `best` is
             the plan that misses it least.
         UnprovenPath: with posture axes, the path found could not be proven free.
         PlanningError: no path was found in time.
         WorkerDied: a worker process ended without a result.
-        KeyboardInterrupt: after Ctrl-C, see above.
     """
     begin = time.perf_counter()
     if not isinstance(problem, Problem):
@@ -76,16 +74,12 @@ def plan(
     chosen = planner_of(planner, problem)
     chosen.refuse(problem)
     rng, seed_number = _generator(seed)
-    request = _request(refine, colonies, workers, time_limit, on_cycle)
+    request = _request(chosen, refine, colonies, workers, time_limit, on_cycle)
     check_colonies(problem, request.colonies)
-    _check_exact(chosen, request)
-    choice = one_of("on_interrupt", on_interrupt, (RETURN, RAISE))
     certified = partial(_certified, problem, chosen, seed_number, begin)
     try:
-        with Interruption(choice) as interruption:
-            stop, at_begin = interruption.is_pressed, interruption.begin
-            request = request._replace(stop_requested=stop, begin=at_begin)
-            solution = chosen.solve(problem, rng, request)
+        with Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE))) as interruption:
+            solution = chosen.solve(problem, rng, interruption.received_by(request))
     except AttitudeOutOfReach as error:
         if isinstance(error.best, Solution):
             error.best = certified(error.best)
@@ -131,6 +125,7 @@ def refine(plan: Plan) -> Plan:
 
 
 def _request(
+    planner: Planner,
     refine: bool | None,
     colonies: int,
     workers: int,
@@ -140,6 +135,10 @@ def _request(
     if on_cycle is not None and not callable(on_cycle):
         raise InvalidInput("on_cycle", on_cycle, "a function, or None")
     count = whole_number("colonies", colonies, at_least=1)
+    if planner.exact and count > 1:
+        raise InvalidInput("colonies", colonies, f"1 with {planner.name}: it has one result")
+    if planner.exact and on_cycle is not None:
+        raise InvalidInput("on_cycle", on_cycle, f"None with {planner.name}: it has no cycles")
     if on_cycle is not None and count > 1:
         raise InvalidInput("on_cycle", on_cycle, "a callback only where colonies = 1")
     seconds = math.inf if time_limit is None else number("time_limit", time_limit, above=0.0)
@@ -163,16 +162,6 @@ def _certified(
         seconds=time.perf_counter() - begin,
         **solution._asdict(),
     )
-
-
-def _check_exact(planner: Planner, request: SearchRequest) -> None:
-    """Raise `InvalidInput` for what an exact planner would ignore."""
-    if planner.exact and request.colonies > 1:
-        allowed = f"1 with {planner.name}: it has one result"
-        raise InvalidInput("colonies", request.colonies, allowed)
-    if planner.exact and request.on_cycle is not None:
-        allowed = f"None with {planner.name}: it has no cycles"
-        raise InvalidInput("on_cycle", request.on_cycle, allowed)
 
 
 def _generator(seed: int | np.random.Generator) -> tuple[np.random.Generator, int | None]:

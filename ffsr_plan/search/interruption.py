@@ -10,6 +10,7 @@ from types import FrameType, TracebackType
 from typing import ClassVar
 
 from ffsr_plan.core.errors import PlanningError
+from ffsr_plan.search.records import SearchRequest
 
 RETURN, RAISE = "return", "raise"
 """What `plan` does at Ctrl-C during the search: return the best plan so far, or raise."""
@@ -68,9 +69,13 @@ class Interruption:
         if self.pressed:
             raise self._error()
 
-    def is_pressed(self) -> bool:
-        """Whether Ctrl-C was pressed."""
-        return self.pressed
+    def received_by(self, request: SearchRequest) -> SearchRequest:
+        """A request whose search Ctrl-C ends.
+
+        Args:
+            request: the same without.
+        """
+        return request._replace(stop_requested=lambda: self.pressed, begin=self.begin)
 
     def _receive(self, number: int, frame: FrameType | None) -> None:
         again, self.pressed = self.pressed, True

@@ -29,7 +29,7 @@ def chain():
 
 def test_every_pair_that_touches_is_listed_with_its_depth(chain):
     rng = np.random.default_rng(1)
-    centers, radii = rng.uniform((-1, -1, -1), (4, 1, 1), (40, 3)), rng.uniform(0.1, 0.6, 40)
+    centers, radii = rng.uniform((-1, -1, -1), (4, 1, 1), (40, 3)), rng.uniform(0.2, 0.8, 40)
     scene = fp.Scene(centers[:25], radii[:25]).named("a.stl") + fp.Scene(centers[25:], radii[25:])
     found = contacts(chain, scene, chain.configuration())
     expected = {}
@@ -45,10 +45,11 @@ def test_every_pair_that_touches_is_listed_with_its_depth(chain):
 
 
 def test_links_that_touch_one_another_are_listed(chain):
-    folded = chain.configuration(joints={"j_near": 0.0, "j_far": np.pi, "j_end": 0.0})
-    found = contacts(chain, fp.Scene(), folded)  # far on base, end a metre behind it
-    assert [(c.link, c.obstacle) for c in found] == [("base", "far")]
-    assert found[0].depth == pytest.approx(0.8, abs=1e-6)
+    folded = chain.configuration(joints={"j_far": 2.8})  # the end lies near the ball `near`
+    found = contacts(chain, fp.Scene(), folded)
+    assert [(c.link, c.obstacle) for c in found] == [("near", "end")]
+    apart = 2.0 * np.sin(0.5 * (np.pi - 2.8))
+    assert found[0].depth == pytest.approx(0.6 - apart, abs=1e-6)
 
 
 def test_a_refused_start_names_all_that_touches_there_and_at_the_goal(chain):
@@ -66,7 +67,7 @@ def test_a_refused_start_names_all_that_touches_there_and_at_the_goal(chain):
 
 def test_advice_depends_on_what_touches(chain):
     start = chain.configuration()
-    folded = chain.configuration(joints={"j_far": np.pi})
+    folded = chain.configuration(joints={"j_far": 2.8})
     apart = fp.Scene([[0.0, 0.62, 0.0]], [0.2], excess=0.1)
     assert "a smaller excess of the cover" in str(start_in_collision(chain, apart, start))
     deep = fp.Scene([[0.0, 0.3, 0.0]], [0.2], excess=0.1)
