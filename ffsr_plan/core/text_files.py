@@ -29,6 +29,15 @@ def read_text(what: str, path: Path, encoding: str = "utf-8") -> str:
         raise InvalidInput(what, str(path), f"a readable UTF-8 file ({reason})") from None
 
 
+def is_lfs_pointer(content: bytes) -> bool:
+    """Whether a file is a pointer that Git LFS leaves in place of a file not yet fetched.
+
+    Args:
+        content: bytes of the file.
+    """
+    return content.startswith(b"version https://git-lfs.github.com/spec/")
+
+
 def write_text(what: str, path: Path, text: str) -> None:
     """Write a text file as UTF-8, line ends unchanged.
 

@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.meshes.mesh_files import find
+from ffsr_plan.meshes.mesh_addresses import find
 from ffsr_plan.robots.urdf_validation import Counts
 
 

@@ -21,7 +21,8 @@ from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, Rule, Text, Vect
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.meshes.box_cover import boxes_around
 from ffsr_plan.meshes.hull_reduction import beyond
-from ffsr_plan.meshes.mesh_files import find, hull, surface
+from ffsr_plan.meshes.mesh_addresses import find
+from ffsr_plan.meshes.mesh_files import hull, surface
 from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.robots.robot import SpaceRobot
