@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import finite_array, number, one_of, truth, whole_number
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.read_only_dict import ReadOnlyDict
 from ffsr_plan.core.settings import Given, UnknownKey, from_mapping
 
 Vector = Given[Array, ArrayLike]
@@ -211,7 +212,7 @@ class Numbers(Rule):
 
 @dataclass(frozen=True)
 class NamedNumbers(Rule):
-    """Numbers by name, such as joint values.
+    """Numbers by name, such as joint values, kept read-only.
 
     Attributes:
         meaning: what they are, for errors.
@@ -219,11 +220,15 @@ class NamedNumbers(Rule):
 
     meaning: str = "joint names with their values"
 
-    def check(self, what: str, value: object, others: Mapping[str, Any]) -> dict[str, float]:
+    def check(
+        self, what: str, value: object, others: Mapping[str, Any]
+    ) -> ReadOnlyDict[str, float]:
         """See `Rule.check`."""
         if not isinstance(value, Mapping):
             raise InvalidInput(what, value, self.meaning)
-        return {str(name): number(f"{what}.{name}", each) for name, each in value.items()}
+        return ReadOnlyDict(
+            {str(name): number(f"{what}.{name}", each) for name, each in value.items()}
+        )
 
     def json_schema(self) -> dict[str, Any]:
         """See `Rule.json_schema`."""

@@ -49,9 +49,7 @@ def read_dae(content: bytes) -> Triangles:
         import trimesh
 
         try:
-            scene = trimesh.load_scene(
-                bare, file_type="dae", process=False, ignore_broken=False
-            )
+            scene = trimesh.load_scene(bare, file_type="dae", process=False, ignore_broken=False)
             scale = trimesh.units.unit_conversion(scene.units, "meters") if scene.units else 1.0
             mesh = scene.to_mesh()
             vertices = np.asarray(mesh.vertices, dtype=np.float64) * scale

@@ -62,7 +62,9 @@ def found(address: str, folders: Sequence[str], where: str) -> Path:
     """
     path = find(address, folders)
     if path is None:
-        raise InvalidInput(where, address, f"a file of this machine ({_searched(address, folders)})")
+        raise InvalidInput(
+            where, address, f"a file of this machine ({_searched(address, folders)})"
+        )
     return path
 
 
@@ -137,4 +139,6 @@ def _searched(address: str, folders: Sequence[str]) -> str:
         f"{name} ({os.environ.get(name) or 'not set'})"
         for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
     )
-    return f"package '{package}' searched in {places}{above}, {variables}; package_dirs adds folders"
+    return (
+        f"package '{package}' searched in {places}{above}, {variables}; package_dirs adds folders"
+    )

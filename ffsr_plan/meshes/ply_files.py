@@ -6,12 +6,15 @@ from array import array
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import islice
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import IntArray
 from ffsr_plan.meshes.triangle_files import Triangles, fan, shown
 
+Columns = dict[str, NDArray[Any]]
 _TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1",
     "short": "i2", "int16": "i2", "ushort": "u2", "uint16": "u2",
@@ -54,7 +57,7 @@ def read_ply(content: bytes) -> Triangles:
     tables = _binary(elements, body, order) if order else _text(elements, body)
     vertices = np.column_stack([_column(tables, "vertex", (axis,)) for axis in "xyz"])
     faces: IntArray = _column(tables, "face", _FACES).astype(np.int64)
-    if faces.size and not (0 <= int(faces.min()) and int(faces.max()) < len(vertices)):
+    if faces.size and not (int(faces.min()) >= 0 and int(faces.max()) < len(vertices)):
         raise ValueError(f"a face of vertex {int(faces.max())} of {len(vertices)}, from 0")
     return Triangles(vertices.astype(np.float64), faces)
 
@@ -95,7 +98,7 @@ def _count(word: str) -> int:
     return int(word)
 
 
-def _text(elements: list[_Element], body: bytes) -> dict[str, Mapping[str, Array]]:
+def _text(elements: list[_Element], body: bytes) -> dict[str, Columns]:
     """Columns of a text file by element; of lists those of the faces only, as triangles."""
     lines = iter([line for line in body.splitlines() if line.strip()])
     tables = {}
@@ -129,9 +132,7 @@ def _words(element: _Element, lines: Iterator[bytes]) -> Iterator[tuple[int, lis
         raise ValueError(f"{number} lines of {element.count} of {element.name}")
 
 
-def _text_lists(
-    element: _Element, rows: Iterator[tuple[int, list[bytes]]]
-) -> dict[str, Array]:
+def _text_lists(element: _Element, rows: Iterator[tuple[int, list[bytes]]]) -> Columns:
     """Triangles of the faces of an element with lists, all words of which are checked."""
     triangles = array("q")
     for number, words in rows:
@@ -160,11 +161,9 @@ def _bad_row(element: _Element, number: int, words: list[bytes]) -> str:
     return f"row {number} of {element.name}: {shown(b' '.join(words))}"
 
 
-def _binary(
-    elements: list[_Element], body: bytes, order: str
-) -> dict[str, Mapping[str, Array]]:
+def _binary(elements: list[_Element], body: bytes, order: str) -> dict[str, Columns]:
     """Columns of a binary file by element; of lists those of the faces only, as triangles."""
-    tables = dict[str, Mapping[str, Array]]()
+    tables = dict[str, Columns]()
     place = 0
     for element in elements:
         record = _record(element, body, place, order)
@@ -213,9 +212,7 @@ def _record(element: _Element, body: bytes, place: int, order: str) -> np.dtype[
     return record
 
 
-def _rows_apart(
-    element: _Element, body: bytes, place: int, order: str
-) -> tuple[dict[str, Array], int]:
+def _rows_apart(element: _Element, body: bytes, place: int, order: str) -> tuple[Columns, int]:
     """Triangles of an element whose lists differ in length, row by row, and the place after it."""
     triangles = array("q")
     for _ in range(element.count):
@@ -228,9 +225,7 @@ def _rows_apart(
     return {_FACES[0]: np.array(triangles, dtype=np.int64).reshape(-1, 3)}, place
 
 
-def _column(
-    tables: Mapping[str, Mapping[str, Array]], element: str, names: tuple[str, ...]
-) -> Array:
+def _column(tables: Mapping[str, Columns], element: str, names: tuple[str, ...]) -> NDArray[Any]:
     """The column of a table, by any of some names."""
     for name in names:
         if name in tables.get(element, {}):
@@ -238,7 +233,7 @@ def _column(
     raise ValueError(f"no {names[0]} of {element}")
 
 
-def _triangles(polygons: Array) -> IntArray:
+def _triangles(polygons: NDArray[Any]) -> IntArray:
     """(k, 3) triangles of polygons (n, m), as fans."""
     if polygons.ndim != 2 or polygons.shape[1] < 3:
         raise ValueError("faces of fewer than three corners")

@@ -2,14 +2,15 @@
 
 Trimesh's readers skip what they do not understand: at a number that is none, the rest of a solid is
 lost, and an index of zero means the last vertex. A part that is lost in silence is an obstacle that
-is not avoided, so these readers refuse the file. Of OBJ files they read vertices and faces; colours,
-normals, textures, points and lines do not matter here.
+is not avoided, so these readers refuse the file. Of OBJ files they read vertices and faces; points
+and lines, colours, normals and textures do not matter here.
 """
 
 from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -137,7 +138,7 @@ def fan(polygon: list[int]) -> list[int]:
         return polygon
     if len(polygon) < 3:
         raise ValueError
-    pairs = zip(polygon[1:], polygon[2:], strict=False)
+    pairs = pairwise(polygon[1:])
     return [corner for second, third in pairs for corner in (polygon[0], second, third)]
 
 

@@ -15,6 +15,7 @@ from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.adjacent_links import may_touch
 from ffsr_plan.robots.collision_shapes import CONTAINERS, Containers, collision_geometry
+from ffsr_plan.robots.locked_joints import fix_locked_joints
 from ffsr_plan.robots.pinocchio_models import build_model, check_loaded, visual_model
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.srdf import disabled_pairs
@@ -33,6 +34,7 @@ def load_robot(
     srdf: str | Path | None = None,
     meshes: str = "hull",
     cylinders: str = "hull",
+    locked: Mapping[str, float] | None = None,
 ) -> SpaceRobot:
     """Load a robot whose root link floats freely.
 
@@ -42,14 +44,19 @@ def load_robot(
     Args:
         source: name of a bundled robot (see `robot_names`), or path to a `.urdf` file.
         package_dirs: folders in which `package://` and relative mesh addresses are looked up,
-            before the folder of the `.urdf` file.
+            before the folder of the `.urdf` file. A package is also looked for upwards from that
+            folder, and in `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`.
         srdf: path to an SRDF whose `<disable_collisions>` exempt pairs of links from the check for
             self-collision (adjacent links are exempt in any case) and whose `<group_state>`s are
-            the robot's named postures. A bundled robot comes with its own.
+            the robot's named postures. A bundled robot comes with its own. The values of virtual
+            joints, and of joints that do not move, are ignored.
         meshes: what replaces a mesh: `hull`, its convex hull, or `capsule`, a capsule around it.
         cylinders: what replaces a cylinder: `hull`, a prism of 24 sides around it (larger by at
             most 0.9 % of the radius), or `capsule`, the capsule around it with the least excess
             (41 % of the radius, more for short cylinders).
+        locked: joints that are fixed, at a value [rad, or m where prismatic]; they are no joints of
+            the robot. Of joints that mimic one another, such as two fingers, name one: the others
+            are fixed with it.
 
     Returns:
         The robot.
@@ -71,13 +78,27 @@ def load_robot(
             raise InvalidInput("robot", str(source), "a bundled robot or an existing .urdf file")
     if srdf is not None and not isinstance(srdf, (str, Path)):
         raise InvalidInput("srdf", srdf, "a path")
-    folders = [*(str(Path(p)) for p in package_dirs), str(path.parent)]
+    folders = [*_folders(package_dirs), str(path.parent)]
     srdf_text = "" if srdf is None else read_text("srdf", Path(srdf))
     if srdf is not None and not srdf_text.strip():
         raise InvalidInput("srdf", str(srdf), "a file that is not empty")
     containers = Containers(meshes, cylinders)
     text = read_text("robot", path)
+    root = parse(text, path.stem)
+    if fix_locked_joints(root, locked, path.stem):
+        text = ElementTree.tostring(root, encoding="unicode") + "\n"
     return robot_from_urdf(text, path.stem, folders, srdf=srdf_text, containers=containers)
+
+
+def _folders(package_dirs: object) -> list[str]:
+    """Folders of `load_robot`, as texts."""
+    listed = package_dirs if isinstance(package_dirs, Sequence) else None
+    if listed is None or isinstance(listed, str):
+        raise InvalidInput("package_dirs", package_dirs, "a list of folders")
+    for each in listed:
+        if not isinstance(each, (str, Path)):
+            raise InvalidInput("package_dirs", each, "a path")
+    return [str(Path(each)) for each in listed]
 
 
 def robot_from_urdf(

@@ -57,9 +57,12 @@ def visual_model(model: pin.Model, text: str, folders: Sequence[str]) -> pin.Geo
             link.remove(collision)
         for visual in link.findall("visual"):
             mesh = visual.find("geometry/mesh")
-            missing = mesh is not None and find(mesh.get("filename", ""), folders) is None
+            path = None if mesh is None else find(mesh.get("filename", ""), folders)
+            missing = mesh is not None and path is None
             if missing or visual.find("geometry/capsule") is not None:
                 link.remove(visual)
+            elif mesh is not None:
+                mesh.set("filename", str(path.absolute()))  # type: ignore[union-attr]
     stripped, kind = ElementTree.tostring(root, encoding="unicode"), pin.GeometryType.VISUAL
     try:
         return pin.buildGeomFromUrdfString(model, stripped, kind, package_dirs=list(folders))

@@ -100,6 +100,7 @@ class SpaceRobot:
         names = tuple(self.model.names[j] for j in range(2, self.model.njoints))
         prismatic = [j.shortname().startswith("JointModelP") for j in joints]
         limits = dict(zip(names, zip(lower, upper, strict=True), strict=True))
+        fixed = [f.name for f in self.model.frames if f.type == pin.FrameType.FIXED_JOINT]
         derived = {
             "joint_names": names,
             "lower": frozen(np.array(lower, dtype=np.float64)),
@@ -109,7 +110,7 @@ class SpaceRobot:
                 {
                     name: ReadOnlyDict(values)
                     for name, values in named_postures(
-                        self.srdf, f"{self.name}, SRDF", limits
+                        self.srdf, f"{self.name}, SRDF", limits, fixed
                     ).items()
                 }
             ),
@@ -160,8 +161,11 @@ class SpaceRobot:
         return tuple(frame.name for frame in frames if frame.type == pin.FrameType.BODY)
 
     def neutral(self) -> Array:
-        """(nq,) configuration with the base at the world's origin and all joint values zero."""
-        return self.assemble(np.zeros(3), IDENTITY, np.zeros(self.nd))
+        """(nq,) configuration with the base at the world's origin and all joint values zero.
+
+        A joint whose limits exclude zero is at the limit nearest to it.
+        """
+        return self.assemble(np.zeros(3), IDENTITY, self._nearest_to_zero())
 
     def configuration(
         self,
@@ -192,7 +196,7 @@ class SpaceRobot:
         if joints is not None and not isinstance(joints, Mapping):
             allowed = "a mapping from joint names to values, or the name of a posture"
             raise InvalidInput("joints", joints, allowed)
-        values = np.zeros(self.nd)
+        values = self._nearest_to_zero()
         for name, value in (joints or {}).items():
             if name not in self.joint_names:
                 raise unknown_name("joints", name, self.joint_names)
@@ -200,6 +204,10 @@ class SpaceRobot:
         self.check_limits("joints", values)
         quat = from_angles(finite_array("attitude", attitude, (3,)))
         return self.assemble(finite_array("position", position, (3,), FARTHEST), quat, values)
+
+    def _nearest_to_zero(self) -> Array:
+        """(nd,) joint values nearest to zero within the limits [rad or m]."""
+        return np.clip(np.zeros(self.nd), self.lower, self.upper)
 
     def components(self, q: ArrayLike) -> Components:
         """Base position, base attitude and joint values of configurations.
@@ -346,6 +354,24 @@ class SpaceRobot:
         write_text("path", target, self.urdf)
         if self.srdf:
             write_text("path", target.with_suffix(".srdf"), self.srdf)
+
+    def frame_index(self, frame: object) -> int:
+        """Index of a frame of the model by its name.
+
+        A URDF may give a link and a joint the same name: the link is meant.
+
+        Args:
+            frame: name of a link, joint or other frame.
+
+        Raises:
+            InvalidInput: an unknown frame, with the nearest name.
+        """
+        frames = self.model.frames
+        known = isinstance(frame, str)
+        named = [k for k, each in enumerate(frames) if known and each.name == frame]
+        if not named:
+            raise unknown_name("frame", frame, dict.fromkeys(each.name for each in frames))
+        return next((k for k in named if frames[k].type == pin.FrameType.BODY), named[0])
 
     def link_of(self, geometry: pin.GeometryObject) -> str:
         """Name of the URDF link that a collision or visual shape belongs to."""

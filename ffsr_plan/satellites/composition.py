@@ -17,6 +17,7 @@ import numpy as np
 
 from ffsr_plan.core.checks import number, one_of
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.read_only_dict import ReadOnlyDict
 from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, Rule, Text, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.meshes.box_cover import boxes_around
@@ -58,6 +59,22 @@ class PathOrName(Rule):
         raise InvalidInput(what, value, self.meaning)
 
 
+@dataclass(frozen=True)
+class Paths(Rule):
+    """Paths, kept as texts."""
+
+    meaning: str
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> tuple[str, ...]:
+        """See `Rule.check`."""
+        if isinstance(value, (str, Path)) or not isinstance(value, Sequence):
+            raise InvalidInput(what, value, self.meaning)
+        for each in value:
+            if not isinstance(each, (str, Path)):
+                raise InvalidInput(what, value, self.meaning)
+        return tuple(map(str, value))
+
+
 @settings(eq=False, of="a mount")
 class Mount:
     """An arm and its place on the bus.
@@ -68,10 +85,12 @@ class Mount:
         attitude: (3,) ZYX angles (alpha, beta, gamma) of that link in the bus frame [rad].
         prefix: put before the names of the arm's links and joints.
         locked: joints of the arm that are fixed, by the arm's own names, at a value [rad, or m
-            where prismatic]; the planner does not move them. If other joints mimic a joint, lock
-            that joint: the others are fixed with it.
+            where prismatic]; the planner does not move them. Of joints that mimic one another,
+            such as two fingers, name one: the others are fixed with it.
         srdf: path to an SRDF of the arm, by whose `<disable_collisions>` links may touch. An arm
             given by its name has its own, if example-robot-data has one.
+        package_dirs: folders in which `package://` and relative mesh addresses are looked up,
+            before the folder of the `.urdf` file; see `load_robot`.
 
     Raises:
         InvalidInput: a value that is not finite, or of another type.
@@ -82,10 +101,13 @@ class Mount:
     attitude: Annotated[Vector, Numbers(3)] = setting(default=(0.0, 0.0, 0.0))
     prefix: Annotated[str, Text("a text, such as 'left_'")] = ""
     locked: Annotated[
-        Given[dict[str, float], Mapping[str, float]],
+        Given[ReadOnlyDict[str, float], Mapping[str, float]],
         NamedNumbers("a mapping from joint names to values"),
     ] = setting(default_factory=dict)
     srdf: Annotated[str | Path | None, PathOrName("a path", optional=True)] = None
+    package_dirs: Annotated[
+        Given[tuple[str, ...], Sequence[str | Path]], Paths("a list of paths")
+    ] = setting(default=())
 
 
 def compose(
@@ -132,7 +154,7 @@ def compose(
         if not isinstance(mount, Mount):
             allowed = "Mounts, such as Mount('ur5', position=(0, 0, 0.5), prefix='left_')"
             raise InvalidInput("arms", mount, allowed)
-    loaded = [load_arm(mount.arm, mount.locked, mount.srdf) for mount in arms]
+    loaded = [load_arm(mount.arm, mount.locked, mount.srdf, mount.package_dirs) for mount in arms]
     both = list(zip(loaded, arms, strict=True))
     return put_together(bus, both, name, shapes, postures or {}, may_touch)
 

@@ -51,6 +51,7 @@ class RobotTable:
         srdf: path of an SRDF, relative to the scenario file.
         meshes: what replaces collision meshes.
         cylinders: what replaces collision cylinders.
+        locked: joints that are fixed, at a value [rad or m]; of joints that mimic one another, one.
     """
 
     urdf: Annotated[str, Text("a name or a path", empty=False)]
@@ -59,6 +60,7 @@ class RobotTable:
     srdf: FilePath | None = None
     meshes: Container = "hull"
     cylinders: Container = "hull"
+    locked: JointValues = field(default_factory=dict)
 
     def robot(self, folder: Path) -> SpaceRobot:
         """The robot; paths are relative to `folder`."""
@@ -68,6 +70,7 @@ class RobotTable:
             srdf=None if self.srdf is None else folder / self.srdf,
             meshes=self.meshes,
             cylinders=self.cylinders,
+            locked=self.locked,
         )
 
 
