@@ -13,6 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ffsr_plan.collision.distances import Clearance, clearance
+from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
 from ffsr_plan.core import errors
 from ffsr_plan.core.errors import (
     AttitudeOutOfReach,
@@ -111,6 +112,8 @@ __all__ = [
     "Scenario",
     "Scene",
     "SearchResult",
+    "SelfCollision",
+    "SelfCollisions",
     "Solution",
     "SpaceRobot",
     "StartInCollision",
@@ -135,6 +138,7 @@ __all__ = [
     "refine",
     "robot_names",
     "robot_summaries",
+    "self_collisions",
 ]
 
 _LAZY = {  # modules that take time to import and that not every script needs

@@ -93,7 +93,9 @@ def _mimic(
     """What a joint mimics."""
     about, leader = f"{where}, joint '{name}', mimic", element.get("joint")
     if leader == name:
-        raise InvalidInput(where, f"joint '{name}' with a mimic of itself", "a mimic of another")
+        raise InvalidInput(
+            about, f"a mimic of '{name}' itself", "a mimic of another joint that moves"
+        )
     if leader is None or leader not in joints:
         raise unknown_name(f"{about} joint", leader, joints)
     (factor,) = numbers(f"{about} multiplier", element.get("multiplier", "1"), 1)
