@@ -51,7 +51,8 @@ print(doubled(4.0))
 PROGRAM = """
 import importlib.util, sys
 spec = importlib.util.spec_from_file_location("ffsr_plan.made", sys.argv[1])
-spec.loader.exec_module(importlib.util.module_from_spec(spec))
+module = sys.modules["ffsr_plan.made"] = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(module)
 """
 
 
