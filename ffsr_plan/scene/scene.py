@@ -121,7 +121,9 @@ class Scene:
         Raises:
             InvalidInput: a mesh that cannot be read, is not closed, or is too large for the excess.
         """
+        where = "mesh"
         if isinstance(mesh, (str, Path)):
+            where = f"mesh {mesh}"
             corners = mesh_files.surface(str(Path(mesh).absolute()), [], "mesh")
         elif hasattr(mesh, "triangles"):
             corners = finite_array("mesh, triangles", mesh.triangles, (-1, 3, 3))
@@ -132,8 +134,8 @@ class Scene:
         axes = rotations.matrix(rotations.from_angles(finite_array("attitude", attitude, (3,))))
         triangles = number("scale", scale, above=0.0) * corners @ axes.T
         triangles = triangles + finite_array("position", position, (3,), FARTHEST)
-        excess = number("mesh, excess", excess, above=0.0)
-        spheres = cover(triangles, excess, truth("inside", inside))
+        excess = number(f"{where}, excess", excess, above=0.0)
+        spheres = cover(triangles, excess, truth("inside", inside), where)
         return cls(spheres.centers, spheres.radii, excess)
 
     def to_csv(self, path: str | Path) -> None:
