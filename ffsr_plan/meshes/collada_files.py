@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 import math
+import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -69,7 +70,7 @@ def _check_positions(root: ElementTree.Element) -> None:
     for source in root.iter(f"{space}source"):
         if source.get("id") in sources:
             for numbers in source.iter(f"{space}float_array"):
-                words = (numbers.text or "").split()
+                words = (word[0] for word in re.finditer(r"\S+", numbers.text or ""))
                 bad = next((word for word in words if not _is_finite(word)), None)
                 if bad is not None:
                     raise ValueError(f"a position {bad[:60]!r}")

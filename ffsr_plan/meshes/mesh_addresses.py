@@ -99,7 +99,7 @@ def _in_packages(rest: str, folders: Sequence[str]) -> Iterator[str]:
         if _is_package(entry, package):
             yield os.path.join(entry, inner)
         yield os.path.join(entry, rest)
-        yield from (str(each) for each in sorted(Path(entry).glob(f"*/{_literal(rest)}")))
+        yield from (os.path.join(folder, rest) for folder in _folders_in(entry))
     for entry in _listed("AMENT_PREFIX_PATH"):
         yield os.path.join(entry, "share", rest)
 
@@ -115,9 +115,13 @@ def _is_package(folder: str, name: str) -> bool:
     return (manifest.findtext("name") or "").strip() == name
 
 
-def _literal(path: str) -> str:
-    """A path as a pattern of `glob` that matches nothing else."""
-    return re.sub(r"([*?[])", r"[\1]", path)
+def _folders_in(folder: str) -> list[str]:
+    """Folders in a folder, sorted; none if it cannot be read."""
+    try:
+        with os.scandir(folder) as entries:
+            return sorted(entry.path for entry in entries if entry.is_dir())
+    except OSError:
+        return []
 
 
 def _listed(variable: str) -> list[str]:

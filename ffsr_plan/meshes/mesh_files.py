@@ -15,8 +15,8 @@ from ffsr_plan.meshes.mesh_addresses import found
 from ffsr_plan.meshes.ply_files import read_ply
 from ffsr_plan.meshes.triangle_files import read_obj, read_stl
 
-MOST_BYTES, MOST_TRIANGLES = 200_000_000, 2_000_000
-"""Limits of a mesh file, to limit memory use to about 2 GB."""
+MOST_BYTES, MOST_TRIANGLES = 100_000_000, 1_000_000
+"""Limits of a mesh file, by which memory stays below 2 GB."""
 FARTHEST = 1e9
 """Limit of coordinates in the unit of the file; beyond it the digits of a mesh are lost."""
 _READERS = {".stl": read_stl, ".obj": read_obj, ".dae": read_dae, ".ply": read_ply}

@@ -154,6 +154,13 @@ def _text_lists(element: _Element, rows: Iterator[tuple[int, list[bytes]]]) -> C
                 raise ValueError
         except (IndexError, OverflowError, ValueError):
             raise ValueError(_bad_row(element, number, words)) from None
+    return _faces(element, triangles)
+
+
+def _faces(element: _Element, triangles: array[int]) -> Columns:
+    """The column of faces of an element, if it has one."""
+    if not {*_FACES} & element.columns.keys():
+        return {}
     return {_FACES[0]: np.array(triangles, dtype=np.int64).reshape(-1, 3)}
 
 
@@ -222,7 +229,7 @@ def _rows_apart(element: _Element, body: bytes, place: int, order: str) -> tuple
             if name in element.columns:
                 triangles.extend(_triangles(row[name][None]).ravel().tolist())
         place += record.itemsize
-    return {_FACES[0]: np.array(triangles, dtype=np.int64).reshape(-1, 3)}, place
+    return _faces(element, triangles), place
 
 
 def _column(tables: Mapping[str, Columns], element: str, names: tuple[str, ...]) -> NDArray[Any]:

@@ -112,7 +112,7 @@ def corners_of(content, kind):
     if kind == "text ply":
         rows = [row.split() for row in body.split(b"\n")[len(vertices) :]]
         return vertices[[int(word) for row in rows for word in row[1:]]]
-    faces = np.frombuffer(body[12 * len(vertices) :], "u1,(3)<i4")["f1"]
+    faces = np.frombuffer(body[12 * len(vertices) :], "u1,(3,)<i4")["f1"]
     return vertices[faces.ravel()]
 
 
