@@ -83,7 +83,7 @@ class StartTable:
         attitude: (3,) ZYX angles alpha, beta, gamma [rad].
         posture: name of a posture of the robot, whose joint values are taken.
         joints: joint values by name [rad or m], in place of those of the posture; joints that
-            neither names are at zero.
+            neither names are at zero, or at the limit nearest to it.
     """
 
     position: Position = setting(default=_ORIGIN)
@@ -125,7 +125,7 @@ class GoalTable:
             to bring the base to it.
         posture: name of a posture of the robot, whose joint values are taken.
         joints: joint values by name [rad or m], in place of those of the posture; joints that
-            neither names are at zero.
+            neither names are at zero, or at the limit nearest to it.
         end_effector: pose of a frame, from which the joint values follow by inverse kinematics.
     """
 

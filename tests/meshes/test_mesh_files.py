@@ -232,7 +232,7 @@ def test_a_mesh_that_is_none_is_refused_for_robots_and_scenes(tmp_path, content,
 def test_files_of_too_many_bytes_or_triangles_are_refused(tmp_path, monkeypatch):
     blob(0).export(tmp_path / "part.stl")
     monkeypatch.setattr(mesh_files, "MOST_TRIANGLES", 17)
-    with pytest.raises(fp.InvalidInput, match=r"part\.stl of 18 triangles; allowed: at most 17"):
+    with pytest.raises(fp.InvalidInput, match=r"part\.stl of 18 triangles'; allowed: at most 17"):
         mesh_files.surface(str(tmp_path / "part.stl"), [], "made")
     monkeypatch.setattr(mesh_files, "MOST_BYTES", 900)
     with pytest.raises(fp.InvalidInput, match=r"part\.stl of 0\.000984 MB"):
