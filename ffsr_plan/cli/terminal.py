@@ -63,7 +63,7 @@ def errors_on_stderr() -> Iterator[None]:
 
 def _unexpected(error: Exception) -> InternalError:
     """What nobody has foreseen, in one sentence that says where it happened."""
-    frames = [frame for frame in traceback.extract_tb(error.__traceback__)]
+    frames = list(traceback.extract_tb(error.__traceback__))
     own = [frame for frame in frames if "ffsr_plan" in frame.filename] or frames
     where = f"{Path(own[-1].filename).name}, line {own[-1].lineno}"
     text = " ".join(str(error).split())

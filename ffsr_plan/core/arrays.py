@@ -65,7 +65,9 @@ def equal_by_content(cls: Class) -> Class:
     def unequal(self: tuple[object, ...], other: object) -> bool:
         return not equal(self, other)
 
-    for name, method in (("__eq__", equal), ("__ne__", unequal)):
+    def hashed(self: tuple[object, ...]) -> int:
+        return hash(content(tuple(self)))
+
+    for name, method in (("__eq__", equal), ("__ne__", unequal), ("__hash__", hashed)):
         setattr(cls, name, method)
-    cls.__hash__ = lambda self: hash(content(tuple(self)))  # type: ignore[assignment]
     return cls

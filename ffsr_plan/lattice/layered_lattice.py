@@ -13,7 +13,6 @@ from ffsr_plan.lattice.memory_estimate import check_lattice
 from ffsr_plan.problem.problem import Problem
 
 
-
 def path_frame(travel: Array) -> Array:
     """Sigma_B as a rotation matrix (3, 3), columns x', y', z' in world axes (Eq. 3).
 

@@ -32,7 +32,10 @@ class JointDirection(Rule):
             pairs = dict(value)
         except (TypeError, ValueError):
             raise InvalidInput(what, value, allowed) from None
-        moves = {str(name): number(f"{what}.{name}", each, at_least=-1e9, at_most=1e9) for name, each in pairs.items()}
+        moves = {
+            str(name): number(f"{what}.{name}", each, at_least=-1e9, at_most=1e9)
+            for name, each in pairs.items()
+        }
         if not any(moves.values()):
             raise InvalidInput(what, value, "a joint that moves")
         return tuple(moves.items())

@@ -281,7 +281,11 @@ def _srdf(
             checked = number(f"postures['{posture}'], '{joint}'", value)
             ElementTree.SubElement(state, "joint", name=str(joint), value=attribute_text(checked))
     for pair in may_touch:
-        if not isinstance(pair, Sequence) or len(pair) != 2 or not all(isinstance(link, str) for link in pair):
+        if (
+            not isinstance(pair, Sequence)
+            or len(pair) != 2
+            or not all(isinstance(link, str) for link in pair)
+        ):
             raise InvalidInput("may_touch", pair, "pairs of link names")
         ElementTree.SubElement(root, "disable_collisions", link1=pair[0], link2=pair[1])
     if not len(root):

@@ -8,7 +8,15 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.setting_rules import ByKey, FilePath, Number, Numbers, Truth, Vector, WholeNumber
+from ffsr_plan.core.setting_rules import (
+    ByKey,
+    FilePath,
+    Number,
+    Numbers,
+    Truth,
+    Vector,
+    WholeNumber,
+)
 from ffsr_plan.core.settings import settings
 from ffsr_plan.scene import generators
 from ffsr_plan.scene.scene import Scene

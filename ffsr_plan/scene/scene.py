@@ -23,7 +23,7 @@ from ffsr_plan.scene import sphere_files
 from ffsr_plan.scene.sphere_tree import SphereTree, sphere_tree
 
 
-_LARGEST_SCALE = 1e9
+_LARGEST_SCALE = 1e9  # [m] per unit of a mesh
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -54,7 +54,9 @@ class Scene:
         Raises:
             InvalidInput: shapes that do not fit, not finite, or a radius <= 0, with its index.
         """
-        check_memory("scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres")
+        check_memory(
+            "scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
+        )
         c = finite_array("scene centers", centers, (-1, 3), FARTHEST)
         r = finite_array("scene radii", radii, (-1,))
         if len(c) != len(r):

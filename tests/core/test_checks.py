@@ -59,7 +59,20 @@ def test_arrays_of_any_kind_of_number_are_accepted(value):
 
 @pytest.mark.parametrize(
     "value",
-    [None, 3, True, "", b"a", [], object(), "a\0b", "n" * 256, "d/" * 2100, "\ud800", Path("n" * 300)],
+    [
+        None,
+        3,
+        True,
+        "",
+        b"a",
+        [],
+        object(),
+        "a\0b",
+        "n" * 256,
+        "d/" * 2100,
+        "\ud800",
+        Path("n" * 300),
+    ],
     ids=range(12),
 )
 def test_a_path_that_no_file_can_have_is_refused(value):

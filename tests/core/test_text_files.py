@@ -44,7 +44,9 @@ def test_a_full_disk_keeps_the_previous_file(tmp_path):
         "write_text('path', pathlib.Path('a.txt'), 'after' * 1000)\n"
     )
     (tmp_path / "a.txt").write_text("before")
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True
+    )
     assert "InvalidInput: path: got 'a.txt'" in done.stderr
     assert "File too large" in done.stderr
     assert (tmp_path / "a.txt").read_text() == "before"
@@ -79,7 +81,9 @@ def test_a_symbolic_link_stays_one(tmp_path):
 def test_streams_are_written_to_and_stay(tmp_path):
     write_text("path", Path(os.devnull), "text")
     assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
-    code = "import sys; from pathlib import Path; from ffsr_plan.core.text_files import write_text\n"
+    code = (
+        "import sys; from pathlib import Path; from ffsr_plan.core.text_files import write_text\n"
+    )
     code += "write_text('path', Path('/dev/stdout'), 'text')"
     with (tmp_path / "out").open("wb") as out:
         subprocess.run([sys.executable, "-c", code], stdout=out, check=True)
