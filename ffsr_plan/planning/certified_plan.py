@@ -52,8 +52,8 @@ class Plan(PlanData):
 
         Args:
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
-            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]; as everything about
-                thrusters and the base's velocity, refused where the robot floats freely.
+            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]. This and
+                other limits of thrusters and of the base's velocity are refused where it floats.
             joint_velocity: [rad/s or m/s]; the URDF's for joints not named.
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
