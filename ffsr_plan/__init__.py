@@ -18,6 +18,7 @@ from ffsr_plan.core.errors import (
     AttitudeOutOfReach,
     FfsrPlanError,
     GoalInCollision,
+    HeldBase,
     IntegrationError,
     InternalError,
     InvalidInput,
@@ -26,9 +27,11 @@ from ffsr_plan.core.errors import (
     PlanNotVerified,
     PoseOutOfReach,
     StartInCollision,
+    UncheckedLinks,
     UnprovenPath,
     WorkerDied,
 )
+from ffsr_plan.core.formatting import Contact
 from ffsr_plan.dynamics import momentum
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.inverse_dynamics import States
@@ -49,6 +52,8 @@ from ffsr_plan.robots.collision_shapes import Replacement
 from ffsr_plan.robots.loading import load_robot, robot_names
 from ffsr_plan.robots.robot import Components, SpaceRobot
 from ffsr_plan.robots.summary import RobotSummary, robot_summaries
+from ffsr_plan.robots.urdf.inertias import Balanced
+from ffsr_plan.robots.urdf.joints import RateLimits
 from ffsr_plan.satellites.arms import arm_names
 from ffsr_plan.satellites.bus import Bus, Panel
 from ffsr_plan.satellites.composition import Mount, compose
@@ -72,15 +77,18 @@ __all__ = [
     "AntSystem",
     "AttitudeOutOfReach",
     "Axis",
+    "Balanced",
     "Bus",
     "Certificate",
     "Clearance",
     "Components",
+    "Contact",
     "Counts",
     "Cycle",
     "EdgeProof",
     "FfsrPlanError",
     "GoalInCollision",
+    "HeldBase",
     "History",
     "IntegrationError",
     "InternalError",
@@ -104,6 +112,7 @@ __all__ = [
     "PostureAxis",
     "PostureTarget",
     "Problem",
+    "RateLimits",
     "Replacement",
     "Report",
     "Roadmap",
@@ -117,6 +126,7 @@ __all__ = [
     "States",
     "TimedPlan",
     "Trails",
+    "UncheckedLinks",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",

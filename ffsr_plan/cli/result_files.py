@@ -32,18 +32,20 @@ def write_results(plan: Plan, title: str, target: Path) -> None:
         InvalidInput: the directory or a file in it cannot be written.
     """
     from ffsr_plan.display.figures import figure_files
-    from ffsr_plan.plans.plan_file import to_text
     from ffsr_plan.display.plan_page import page
+    from ffsr_plan.plans.plan_file import to_text
 
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InvalidInput("--out", str(target), f"a writable directory ({error})") from None
     try:
-        contents = {"plan.json": to_text(plan), "plan.html": page(plan, title)}
-        files = {target / name: content for name, content in contents.items()}
-        files |= {target / name: picture for name, picture in figure_files(plan).items()}
-        write_files("--out", files)
+        contents: dict[str, str | bytes] = {
+            "plan.json": to_text(plan),
+            "plan.html": page(plan, title),
+            **figure_files(plan),
+        }
+        write_files("--out", {target / name: content for name, content in contents.items()})
     except Exception:
         with suppress(InvalidInput):
             plan.save(unused_path(target / "plan.json"))

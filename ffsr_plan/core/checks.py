@@ -17,6 +17,7 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 
 _LARGEST_NUMBER = 1e9  # [m or rad]
+_NORM_ROUNDING = 1e-15  # of the norm of numbers that have been divided by their norm
 _LARGEST_WHOLE_NUMBER = 2**128  # seeds may be as large; counts have limits of their own
 _LONGEST_NAME, _LONGEST_PATH = 255, 4095  # [bytes], as Linux and others limit them
 FARTHEST = 1e5
@@ -209,6 +210,7 @@ def unit_quaternion(what: str, value: ArrayLike) -> Array:
     """Check a unit quaternion.
 
     It is normalised, because a norm of 1 + 1e-7 would appear as a momentum residual of that size.
+    A normalised one is returned as it is, bit for bit: a file gives back what was written to it.
 
     Args:
         what: name in the message.
@@ -224,4 +226,10 @@ def unit_quaternion(what: str, value: ArrayLike) -> Array:
     norm = float(np.linalg.norm(quat))
     if abs(norm - 1.0) > 1e-6:
         raise InvalidInput(what, value, f"a unit quaternion (x, y, z, w); this norm is {norm:.9g}")
-    return frozen(quat / norm)
+    return normalised(quat)
+
+
+def normalised(vector: Array) -> Array:
+    """A vector (n,) divided by its norm, unless that is one but for rounding; read-only."""
+    norm = float(np.linalg.norm(vector))
+    return frozen(vector if abs(norm - 1.0) <= _NORM_ROUNDING else vector / norm)

@@ -42,7 +42,8 @@ def read_text(what: str, path: Path, encoding: str = "utf-8") -> str:
         Its text, line ends as newlines.
 
     Raises:
-        InvalidInput: a file that cannot be read, is not UTF-8 or has more than 256 MB.
+        InvalidInput: a file that cannot be read, is not UTF-8, has more than 256 MB or is a pointer
+            of Git LFS.
     """
     try:
         content = bytearray()
@@ -51,10 +52,24 @@ def read_text(what: str, path: Path, encoding: str = "utf-8") -> str:
                 content += part
                 if len(content) > _LARGEST_FILE:
                     raise ValueError("more than 256 MB")
+        if is_lfs_pointer(bytes(content[:64])):
+            allowed = "the file itself, which `git lfs pull` fetches; this is a pointer of Git LFS"
+            raise InvalidInput(what, str(path), allowed)
         with io.TextIOWrapper(io.BytesIO(content), encoding=encoding) as text:
             return text.read()
+    except InvalidInput:
+        raise
     except (OSError, ValueError) as error:  # a UnicodeDecodeError is a ValueError
         raise InvalidInput(what, str(path), f"a readable UTF-8 file ({_reason(error)})") from None
+
+
+def is_lfs_pointer(content: bytes) -> bool:
+    """Whether a file is a pointer that Git LFS leaves in place of a file not yet fetched.
+
+    Args:
+        content: bytes of the file.
+    """
+    return content.startswith(b"version https://git-lfs.github.com/spec/")
 
 
 def write_text(what: str, path: Path, text: str) -> None:

@@ -51,7 +51,18 @@ def connections(robot: SpaceRobot, joint_values: Array) -> Array:
     """
     if robot.nd == 0:
         return np.zeros((len(joint_values), 3, 0))
-    angular = angular_maps(robot, joint_values)
+    return connections_of(angular_maps(robot, joint_values))
+
+
+def connections_of(angular: Array) -> Array:
+    """The mechanical connection from the maps to angular momentum.
+
+    Args:
+        angular: (N, 3, 3 + nd) see `angular_maps`.
+
+    Returns:
+        (N, 3, nd) matrices A(theta).
+    """
     return np.asarray(-np.linalg.solve(angular[:, :, :3], angular[:, :, 3:]), dtype=np.float64)
 
 

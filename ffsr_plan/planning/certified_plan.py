@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -63,8 +64,10 @@ class Plan(PlanData):
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
             velocity_jump: by how much thrusters may change the velocity of the base in one pulse
                 [m/s]; instead of resting at a corner of its path, the robot then passes it at the
-                speed at which the pulse is as large. A pulse takes time, so that the corner is cut
-                a little (`TimedPlan.corner_cut`); by less than the proven clearance, or the jump
+                highest speed at which the pulse is no larger. Pulses count against
+                `thruster_acceleration`: one of size d takes the time d / thruster_acceleration or
+                longer, does not overlap another, and the pace is constant meanwhile. A pulse cuts
+                its corner (`TimedPlan.corner_cut`); by less than the proven clearance, or the jump
                 is refused.
 
         Raises:
@@ -96,15 +99,23 @@ class Plan(PlanData):
         )
         return timed(self.motion, limits, self.certificate.least_clearance)
 
-    def verify(self, samples: int = 2000) -> Report:
-        """Check the plan again, densely and by other code than the planner's; see `verify`.
+    def verify(
+        self, samples: int | None = None, on_progress: Callable[[float], object] | None = None
+    ) -> Report:
+        """Check the plan again, all along and by other code than the planner's; see `Report`.
 
         Args:
-            samples: distance checks per edge.
-        """
-        from ffsr_plan.verification.verify import verify
+            samples: least number of equal time steps on each edge, 50 by default. Where links are
+                closer to obstacles or to each other than they can move in such a step, it is halved
+                until nothing can be hidden between two samples.
+            on_progress: called with the share of the motion that is done, from 0 to 1.
 
-        return verify(self, samples)
+        Raises:
+            InvalidInput: `samples` is not a positive whole number, or too large.
+        """
+        from ffsr_plan.verification.verify import SAMPLES, verify
+
+        return verify(self, SAMPLES if samples is None else samples, on_progress)
 
     def save(self, path: str | Path) -> None:
         """Write everything to a JSON file; `Plan.load` gives the same plan back, bit for bit."""

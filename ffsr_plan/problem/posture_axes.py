@@ -127,7 +127,8 @@ class PostureAxis(_JointAxis):
 class PostureTarget(_JointAxis):
     """Displacements of the joints towards a posture: by k / levels of the difference to it.
 
-    Index k is in 0 .. levels. Joints that the posture does not name are not displaced.
+    Index k is in 0 .. levels. Joints that the posture does not name are not displaced. Continuous
+    joints go to the value that the posture states, whole turns included.
 
     Attributes:
         towards: name of the posture, from the robot's SRDF.

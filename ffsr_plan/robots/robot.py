@@ -13,7 +13,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, equal_by_content, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternion
+from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
@@ -26,6 +26,10 @@ from ffsr_plan.robots.collision_shapes import (
 from ffsr_plan.robots.kinematics import Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import named_postures
+from ffsr_plan.robots.urdf.inertias import Balanced
+from ffsr_plan.robots.urdf.joints import RateLimits
+
+_HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
 
 
 @equal_by_content
@@ -56,7 +60,8 @@ class SpaceRobot:
 
     Attributes:
         name: name of the robot.
-        urdf: the URDF text that the robot was made from.
+        urdf: what was read of the URDF, as a URDF of its own: known elements only, every number
+            with all its digits, orientations as roll, pitch and yaw.
         model: Pinocchio model, the root link on a free-flyer joint.
         collision_model: collision shapes and the pairs checked for self-collision: all pairs except
             those of adjacent links and those that the SRDF exempts.
@@ -68,10 +73,18 @@ class SpaceRobot:
             URDF, before its scale [m]. With these the robot can be made without the mesh files.
         srdf: the SRDF text; empty if there is none.
         disabled_pairs: pairs of links that the SRDF allows to touch, sorted.
+        unchecked_links: links with a mass or a visual shape but no collision shape: nothing keeps
+            them clear of obstacles, and `Plan.verify` does not check them either.
+        balanced: links whose inertia tensor was balanced; see `load_robot`.
+        rate_limits: limits of acceleration and jerk by joint, from URDF 1.2.
         joint_names: (nd) names of the joints.
         lower: (nd,) lower joint limits [rad or m], -inf for continuous joints.
         upper: (nd,) upper joint limits [rad or m], inf for continuous joints.
         prismatic: (nd,) booleans, true where the joint value is in metres.
+        acceleration: (nd,) limits of the joints' acceleration [rad/s^2 or m/s^2], from URDF 1.2,
+            the lesser of its `acceleration` and `deceleration`; inf where the URDF has none.
+        jerk: (nd,) limits of the joints' jerk [rad/s^3 or m/s^3], from URDF 1.2; inf where the URDF
+            has none.
         postures: joint values [rad or m] by joint, by name of the posture, from the group states of
             the SRDF. A posture may list some of the joints only.
     """
@@ -87,10 +100,15 @@ class SpaceRobot:
     meshes: Mapping[str, Array] = field(default_factory=dict)
     srdf: str = ""
     disabled_pairs: tuple[tuple[str, str], ...] = ()
+    unchecked_links: tuple[str, ...] = ()
+    balanced: tuple[Balanced, ...] = ()
+    rate_limits: Mapping[str, RateLimits] = field(default_factory=dict, repr=False)
     joint_names: tuple[str, ...] = field(init=False)
     lower: Array = field(init=False)
     upper: Array = field(init=False)
     prismatic: NDArray[np.bool_] = field(init=False)
+    acceleration: Array = field(init=False)
+    jerk: Array = field(init=False)
     postures: Mapping[str, Mapping[str, float]] = field(init=False)
     _slots: tuple[tuple[int, int], ...] = field(init=False, repr=False)  # index and length in q
 
@@ -103,11 +121,14 @@ class SpaceRobot:
         names = tuple(self.model.names[j] for j in range(2, self.model.njoints))
         prismatic = [j.shortname().startswith("JointModelP") for j in joints]
         limits = dict(zip(names, zip(lower, upper, strict=True), strict=True))
+        rates = [self.rate_limits.get(name, RateLimits(np.inf, np.inf)) for name in names]
         derived = {
             "joint_names": names,
             "lower": frozen(np.array(lower, dtype=np.float64)),
             "upper": frozen(np.array(upper, dtype=np.float64)),
             "prismatic": frozen(np.array(prismatic, dtype=np.bool_)),
+            "acceleration": frozen(np.array([r.acceleration for r in rates], dtype=np.float64)),
+            "jerk": frozen(np.array([r.jerk for r in rates], dtype=np.float64)),
             "postures": ReadOnlyDict(
                 {
                     name: ReadOnlyDict(values)
@@ -147,6 +168,8 @@ class SpaceRobot:
             "links": str(len(self.link_names)),
             "postures": ", ".join(self.postures) or "none",
         }
+        if self.unchecked_links:
+            rows["not checked"] = ", ".join(self.unchecked_links)
         return html_table(f"SpaceRobot {self.name}", rows)
 
     @property
@@ -296,7 +319,8 @@ class SpaceRobot:
     def joint_change(self, begin: Array, end: Array) -> Array:
         """Change of the joint values from one configuration to another.
 
-        A continuous joint takes the shorter direction; a rotation by pi is positive.
+        A continuous joint takes the shorter direction; half a turn is positive, also if rounding
+        makes it 1e-9 rad more or less.
 
         Args:
             begin: (nq,) first configuration.
@@ -307,6 +331,7 @@ class SpaceRobot:
         """
         change = self.joint_values(end) - self.joint_values(begin)
         wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
+        wrapped = np.where(wrapped < -np.pi + _HALF_TURN_BAND, wrapped + 2.0 * np.pi, wrapped)
         return np.where(np.isinf(self.upper), wrapped, change)
 
     def check_configuration(self, what: str, q: ArrayLike) -> Array:
@@ -317,7 +342,8 @@ class SpaceRobot:
             q: (nq,) configuration.
 
         Returns:
-            (nq,) read-only copy, its quaternion normalised.
+            (nq,) read-only copy; quaternion, and cosine and sine, normalised. What has been
+            checked once is returned bit for bit.
 
         Raises:
             InvalidInput: wrong length, not finite, a quaternion (or cosine and sine of a continuous
@@ -327,23 +353,34 @@ class SpaceRobot:
         finite_array(f"{what} (base position)", checked[:3], (3,), FARTHEST)
         checked[3:7] = unit_quaternion(f"{what} (base quaternion)", checked[3:7])
         for name, (i, nq) in zip(self.joint_names, self._slots, strict=True):
-            if nq == 2 and abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
+            if nq == 1:
+                continue
+            if abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
                 raise InvalidInput(
                     f"{what} (joint {name})", checked[i : i + 2].tolist(), "cosine and sine"
                 )
+            checked[i : i + 2] = normalised(checked[i : i + 2])
         values = self.joint_values(checked)
         self.check_limits(what, values)
         return frozen(checked)
 
     def check_limits(self, what: str, joint_values: Array) -> None:
-        """Raise `InvalidInput` for the first joint value outside its limits."""
-        for k, name in enumerate(self.joint_names):
-            if not self.lower[k] <= joint_values[k] <= self.upper[k]:
-                raise InvalidInput(
-                    f"{what} (joint {name})",
-                    float(joint_values[k]),
-                    f"{self.lower[k]:g} to {self.upper[k]:g}",
-                )
+        """Raise `InvalidInput` that names all joint values outside their limits."""
+        outside = ~((self.lower <= joint_values) & (joint_values <= self.upper))
+        wrong = np.flatnonzero(outside).tolist()
+        if not wrong:
+            return
+        names = [self.joint_names[k] for k in wrong]
+        ranges = [f"{self.lower[k]:g} to {self.upper[k]:g}" for k in wrong]
+        if len(wrong) == 1:
+            raise InvalidInput(
+                f"{what} (joint {names[0]})", float(joint_values[wrong[0]]), ranges[0]
+            )
+        raise InvalidInput(
+            f"{what} (joints {', '.join(names)})",
+            [float(joint_values[k]) for k in wrong],
+            ", ".join(f"{name} {limits}" for name, limits in zip(names, ranges, strict=True)),
+        )
 
     def save(self, path: str | Path) -> None:
         """Write the URDF, and the SRDF if there is one to a `.srdf` file beside it.

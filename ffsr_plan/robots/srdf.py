@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ffsr_plan.core.errors import InvalidInput, unknown_name
-from ffsr_plan.robots.urdf_validation import numbers, parse
+from ffsr_plan.robots.urdf.number_texts import numbers
+from ffsr_plan.robots.urdf.xml_reading import parse
 
 
 def disabled_pairs(text: str, where: str, links: Sequence[str]) -> tuple[tuple[str, str], ...]:

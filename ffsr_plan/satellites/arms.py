@@ -11,12 +11,14 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.srdf import disabled_pairs
-from ffsr_plan.robots.urdf_validation import attribute_numbers, check_urdf, numbers, parse
+from ffsr_plan.robots.urdf.canonical import read_urdf
+from ffsr_plan.robots.urdf.joints import check_movable, position_limits
+from ffsr_plan.robots.urdf.number_texts import attribute_numbers, attribute_text, numbers
+from ffsr_plan.robots.urdf.origins import roll_pitch_yaw
 
 _UR = "ur_description/srdf/ur5.srdf"
 ARMS = {
@@ -57,7 +59,12 @@ def arm_names() -> list[str]:
 
 
 def load_arm(
-    source: str | Path, locked: Mapping[str, float], srdf: str | Path | None = None
+    source: str | Path,
+    locked: Mapping[str, float],
+    srdf: str | Path | None = None,
+    *,
+    collision: str | None = None,
+    inertia: str = "exact",
 ) -> Arm:
     """Read an arm by name or from a `.urdf` file.
 
@@ -66,6 +73,9 @@ def load_arm(
         locked: joints to fix, by the arm's own names, at a value [rad, or m where prismatic].
             Joints that mimic a locked joint are fixed too, at the value that follows from it.
         srdf: path to an SRDF; an arm given by its name has its own, if there is one.
+        collision: see `load_robot`; by default `visual` for an arm given by its name, since some
+            of these have links with visual shapes only, and `collision` for a file.
+        inertia: see `load_robot`.
 
     Returns:
         The arm.
@@ -75,17 +85,19 @@ def load_arm(
             value outside the joint's limits, or a joint that mimics one that is not locked.
     """
     path, own, folders = find_arm(source)
-    text = read_text("arm", path)
+    text = read_text("arm", path, "utf-8-sig")
     where = f"arm {source}"
-    robot = parse(text, where)
+    if collision is None:
+        collision = "collision" if path == Path(source) else "visual"
+    robot = read_urdf(text, where, collision=collision, inertia=inertia)
     mimics = _take_mimics(robot)
-    check_urdf(ElementTree.tostring(robot, encoding="unicode"), where)
     _lock(robot, mimics, locked, where)
+    check_movable(robot, where)
     children = {str(child.get("link")) for child in robot.iterfind("joint/child")}
     names = [str(link.get("name")) for link in robot.findall("link")]
     root = next(name for name in names if name not in children)
     srdf_path = own if srdf is None else Path(srdf)
-    srdf_text = "" if srdf_path is None else read_text("srdf", srdf_path)
+    srdf_text = "" if srdf_path is None else read_text("srdf", srdf_path, "utf-8-sig")
     pairs = disabled_pairs(srdf_text, f"{where}, SRDF", names)
     return Arm(robot, root, folders, where, pairs)
 
@@ -143,7 +155,7 @@ def _lock(
     for name, value in locked.items():
         if name not in free:
             raise unknown_name(f"{where}, locked", name, free)
-        low, high = _limits(joints[name])
+        low, high = position_limits(joints[name])
         values[name] = number(f"{where}, locked '{name}'", value, at_least=low, at_most=high)
     for name, mimic in mimics.items():
         about, leader = f"{where}, joint '{name}', mimic", mimic.get("joint")
@@ -157,13 +169,6 @@ def _lock(
         values[name] = factor * values[leader] + offset
     for name, value in values.items():
         _fix(joints[name], value)
-
-
-def _limits(joint: ElementTree.Element) -> tuple[float, float]:
-    limit = joint.find("limit")
-    if joint.get("type") == "continuous" or limit is None:
-        return -np.inf, np.inf
-    return float(limit.get("lower", "0")), float(limit.get("upper", "0"))
 
 
 def _fix(joint: ElementTree.Element, value: float) -> None:
@@ -180,19 +185,9 @@ def _fix(joint: ElementTree.Element, value: float) -> None:
         position = position + rotations.rotate(rotation, value * axis)
     else:
         rotation = rotations.multiply(rotation, rotations.exp(value * axis))
-        origin.set("rpy", " ".join(map(repr, _rpy(rotations.matrix(rotation)))))
-    origin.set("xyz", " ".join(map(repr, position.tolist())))
+        origin.set("rpy", attribute_text(roll_pitch_yaw(rotations.matrix(rotation))))
+    origin.set("xyz", attribute_text(position))
     joint.set("type", "fixed")
-    for tag in ("axis", "limit"):
+    for tag in ("axis", "limit", "dynamics"):
         for part in joint.findall(tag):
             joint.remove(part)
-
-
-def _rpy(rotation: Array) -> tuple[float, float, float]:
-    """Roll, pitch and yaw of a rotation matrix (3, 3); accurate near their singularity too."""
-    about_z = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
-    about_y = float(np.arctan2(-rotation[2, 0], np.hypot(rotation[0, 0], rotation[1, 0])))
-    sine, cosine = np.sin(about_z), np.cos(about_z)
-    # second row of Rz(-yaw) R: roll fits the yaw used, also where yaw is arbitrary
-    rest = -sine * rotation[0] + cosine * rotation[1]
-    return float(np.arctan2(-rest[2], rest[1])), about_y, about_z

@@ -166,11 +166,12 @@ def _scene(file: ScenarioFile, folder: Path, ends: Sequence[Array]) -> Scene:
     scene = Scene()
     for k, obstacle in enumerate(file.obstacles):
         with _in_table(f"obstacles.{k}"):
-            scene += obstacle.scene(folder)
+            made = obstacle.scene(folder)
+            scene += made if made.sources else made.named(f"obstacles.{k}")
     for name in GENERATORS:
         for k, table in enumerate(getattr(file, name)):
             with _in_table(f"{name}.{k}"):
-                scene += table.scene(ends)
+                scene += table.scene(ends).named(f"{name}.{k}")
     return scene
 
 

@@ -21,6 +21,8 @@ from ffsr_plan.problem.problem import ModeName, Problem
 from ffsr_plan.robots.collision_shapes import CONTAINERS
 from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.urdf.inertias import INERTIA
+from ffsr_plan.robots.urdf.links import COLLISION
 from ffsr_plan.scenario_files.obstacle_tables import (
     BeltTable,
     CloudTable,
@@ -51,6 +53,8 @@ class RobotTable:
         srdf: path of an SRDF, relative to the scenario file.
         meshes: what replaces collision meshes.
         cylinders: what replaces collision cylinders.
+        collision: what becomes of links with visual and without collision shapes.
+        inertia: what becomes of inertia tensors that no body has.
     """
 
     urdf: Annotated[str, Text("a name or a path", empty=False)]
@@ -59,6 +63,8 @@ class RobotTable:
     srdf: FileName | None = None
     meshes: Container = "hull"
     cylinders: Container = "hull"
+    collision: Annotated[str, OneOf(COLLISION)] = "collision"
+    inertia: Annotated[str, OneOf(INERTIA)] = "exact"
 
     def robot(self, folder: Path) -> SpaceRobot:
         """The robot; paths are relative to `folder`."""
@@ -68,6 +74,8 @@ class RobotTable:
             srdf=None if self.srdf is None else folder / self.srdf,
             meshes=self.meshes,
             cylinders=self.cylinders,
+            collision=self.collision,
+            inertia=self.inertia,
         )
 
 

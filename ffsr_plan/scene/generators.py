@@ -135,7 +135,8 @@ def scatter(
     small, large = _radii("scatter", radii)
     count = int(rng.integers(fewest, most + 1))
     x, y = (rng.uniform(first[k], last[k], count) for k in range(2))
-    return Scene(np.stack([x, y, np.zeros(count)], axis=1), rng.uniform(small, large, count))
+    centers = np.stack([x, y, np.zeros(count)], axis=1)
+    return Scene(centers, rng.uniform(small, large, count)).named("scatter")
 
 
 def truss(
@@ -189,7 +190,7 @@ def truss(
         steps = int(np.ceil(np.linalg.norm(tip - tail) / size))
         centers.append(tail + np.arange(1, steps)[:, None] / steps * (tip - tail))
     whole = np.vstack(centers)
-    return Scene(whole, np.full(len(whole), size))
+    return Scene(whole, np.full(len(whole), size)).named("truss")
 
 
 def gate(along: float, aside: float, opening: float, radius: float) -> Scene:
@@ -207,7 +208,8 @@ def gate(along: float, aside: float, opening: float, radius: float) -> Scene:
     x, y = number("gate along", along), number("gate aside", aside)
     half = 0.5 * number("gate opening", opening, above=0.0)
     size = number("gate radius", radius, above=0.0)
-    return Scene([[x, y + half + size, 0.0], [x, y - half - size, 0.0]], [size, size])
+    centers = [[x, y + half + size, 0.0], [x, y - half - size, 0.0]]
+    return Scene(centers, [size, size]).named("gate")
 
 
 def _drawn(
@@ -233,7 +235,7 @@ def _drawn(
             outside &= np.linalg.norm(drawn - center, axis=1) > ball_radius + radius
         centers, sizes = np.vstack([centers, drawn[outside]]), np.append(sizes, radius[outside])
         if len(sizes) == count:
-            return Scene(centers, sizes)
+            return Scene(centers, sizes).named(what)
     text = "; ".join(f"{r:g} m about ({x:g}, {y:g}, {z:g})" for (x, y, z), r in balls)
     raise InvalidInput(f"{what} spared", text, f"balls that leave room for the {what}")
 

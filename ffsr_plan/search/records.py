@@ -54,7 +54,7 @@ class SearchMonitor(NamedTuple):
     Attributes:
         on_cycle: called after each cycle, or None.
         deadline: when to stop, by `time.monotonic()`.
-        stop_requested: asked between cycles; whether the search is to end with what it has.
+        stop_requested: asked often; whether the search is to end with what it has.
     """
 
     on_cycle: OnCycle | None = None
@@ -150,7 +150,8 @@ class SearchRequest(NamedTuple):
         workers: number of processes that they are spread over.
         time_limit: [s] for the search, from its beginning.
         on_cycle: called after each cycle of a single colony, or None.
-        stop_requested: asked between cycles; whether the search is to end with what it has.
+        stop_requested: asked often; whether the search is to end with what it has.
+        begin: called when the search begins, after the lattice has been set up.
     """
 
     refine: bool | None = None
@@ -159,9 +160,11 @@ class SearchRequest(NamedTuple):
     time_limit: float = math.inf
     on_cycle: OnCycle | None = None
     stop_requested: Callable[[], bool] = bool
+    begin: Callable[[], object] = bool
 
     def monitor(self) -> SearchMonitor:
         """The monitor of a search that begins now."""
+        self.begin()
         deadline = time.monotonic() + self.time_limit
         return SearchMonitor(self.on_cycle, deadline, self.stop_requested)
 

@@ -81,10 +81,8 @@ def test_a_symbolic_link_stays_one(tmp_path):
 def test_streams_are_written_to_and_stay(tmp_path):
     write_text("path", Path(os.devnull), "text")
     assert stat.S_ISCHR(os.stat(os.devnull).st_mode)
-    code = (
-        "import sys; from pathlib import Path; from ffsr_plan.core.text_files import write_text\n"
-    )
-    code += "write_text('path', Path('/dev/stdout'), 'text')"
+    code = "import pathlib; from ffsr_plan.core.text_files import write_text\n"
+    code += "write_text('path', pathlib.Path('/dev/stdout'), 'text')"
     with (tmp_path / "out").open("wb") as out:
         subprocess.run([sys.executable, "-c", code], stdout=out, check=True)
     assert (tmp_path / "out").read_text() == "text"
