@@ -23,7 +23,6 @@ from ffsr_plan.meshes.sphere_cover import cover
 from ffsr_plan.scene import sphere_files
 from ffsr_plan.scene.sphere_tree import SphereTree, sphere_tree
 
-
 _LARGEST_SCALE = 1e9  # [m] per unit of a mesh
 
 
