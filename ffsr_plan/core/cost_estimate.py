@@ -1,7 +1,7 @@
 """Estimates of memory and work, made from counts before either is spent.
 
 Whoever is about to make large arrays states their sizes here. The estimates are of the right order,
-within a factor of two or three of what is measured (tests/system/test_memory_estimates.py).
+within a factor of two or three of what is measured (tests/problem/test_memory_estimate.py).
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ import numpy as np
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.rotations import level_direction
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.lattice.memory_estimate import check_lattice
+from ffsr_plan.problem.memory_estimate import check_lattice
 from ffsr_plan.problem.problem import Problem
 
 

@@ -13,9 +13,9 @@ from ffsr_plan.core.formatting import Contact
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
-from ffsr_plan.lattice.memory_estimate import check_lattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
 from ffsr_plan.problem.advice import against_obstacles, against_self_collision
+from ffsr_plan.problem.memory_estimate import check_lattice
 from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict, certify

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.lattice import refinement
+from ffsr_plan.lattice.refinement import refined_path as refinement
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search import interruption, lattice_planner, optimum_planner
 from ffsr_plan.search.postures import annealing_kernels, posture_annealing

@@ -16,7 +16,7 @@ import numpy as np
 
 import ffsr_plan as fp
 from benchmarks.random_scenes import LATTICE, RESULTS, publish, random_problem, table
-from ffsr_plan.lattice.refinement import refined
+from ffsr_plan.lattice.refinement.refined_path import refined
 from ffsr_plan.proof.prover import Prover
 
 FIRST_SEED = 3000

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.verification.distances.hull_gap_kernel import hull_gap
 from ffsr_plan.verification.distances.solid_arrays import SolidArrays
 

@@ -8,7 +8,7 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.core import cost_estimate
-from ffsr_plan.lattice import memory_estimate
+from ffsr_plan.problem import memory_estimate
 from ffsr_plan.search.postures import posture_lattice
 
 

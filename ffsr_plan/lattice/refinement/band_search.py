@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, States
-from ffsr_plan.lattice.edge_clearances import EdgeClearances
 from ffsr_plan.lattice.edge_states import REFUSED
-from ffsr_plan.lattice.offset_band import OffsetBand
+from ffsr_plan.lattice.refinement.edge_clearances import EdgeClearances
+from ffsr_plan.lattice.refinement.offset_band import OffsetBand
 from ffsr_plan.lattice.roadmap import rule_out
 from ffsr_plan.lattice.shortest_path import LazyShortestPath
 from ffsr_plan.problem.objective import nearness

@@ -19,12 +19,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
-from ffsr_plan.lattice.band_search import NO_GAIN, BandSearch
 from ffsr_plan.lattice.certificate import Counts
-from ffsr_plan.lattice.edge_clearances import EdgeClearances
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
-from ffsr_plan.lattice.offset_band import OffsetBand
+from ffsr_plan.lattice.refinement.band_search import NO_GAIN, BandSearch
+from ffsr_plan.lattice.refinement.edge_clearances import EdgeClearances
+from ffsr_plan.lattice.refinement.offset_band import OffsetBand
 from ffsr_plan.problem.objective import objective, path_length
 from ffsr_plan.proof.prover import Prover
 

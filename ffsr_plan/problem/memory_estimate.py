@@ -1,6 +1,6 @@
 """Memory that a lattice takes, from its counts, before any array is made.
 
-The numbers of bytes are those of the arrays, confirmed by measurement: tests/lattice/
+The numbers of bytes are those of the arrays, confirmed by measurement: tests/problem/
 test_memory_estimate.py compares the estimates with the peak memory of whole searches.
 """
 

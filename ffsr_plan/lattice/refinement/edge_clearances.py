@@ -6,7 +6,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.lattice.certificate import Counts
-from ffsr_plan.lattice.offset_band import OffsetBand
+from ffsr_plan.lattice.refinement.offset_band import OffsetBand
 from ffsr_plan.problem.objective import motion_objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict

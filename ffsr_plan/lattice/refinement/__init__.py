@@ -1,0 +1,1 @@
+"""Refinement of a proven lattice path to offsets between the nodes."""

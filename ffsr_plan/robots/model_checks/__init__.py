@@ -1,0 +1,1 @@
+"""Checks of a loaded robot: against its URDF, and for plausibility."""
