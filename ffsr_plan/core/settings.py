@@ -256,7 +256,7 @@ def _in_our_words(cls: type, error: ValidationError, of: str) -> InvalidInput:
         value, allowed = None, "a value: it is required"
     elif kind in ("tuple_type", "list_type"):
         table = isinstance(value, Mapping)
-        allowed = f"a list of tables, each under [[{path}]] in a file" if table else "a list"
+        allowed = "a list of tables, [[name]] in a file" if table else "a list"
     else:
         allowed = first["msg"].removeprefix("Input should be ")
     if len(place) == 1 and "None" not in allowed and _may_be_none(cls, place[0]):

@@ -52,8 +52,8 @@ class Plan(PlanData):
 
         Args:
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
-            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]; as everything about
-                thrusters and the base's velocity, refused where the robot floats freely.
+            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]. This and
+                other limits of thrusters and of the base's velocity are refused where it floats.
             joint_velocity: [rad/s or m/s]; the URDF's for joints not named.
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
@@ -64,8 +64,10 @@ class Plan(PlanData):
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
             velocity_jump: by how much thrusters may change the velocity of the base in one pulse
                 [m/s]; instead of resting at a corner of its path, the robot then passes it at the
-                speed at which the pulse is as large. A pulse takes time, so that the corner is cut
-                a little (`TimedPlan.corner_cut`); by less than the proven clearance, or the jump
+                highest speed at which the pulse is no larger. Pulses count against
+                `thruster_acceleration`: one of size d takes the time d / thruster_acceleration or
+                longer, does not overlap another, and the pace is constant meanwhile. A pulse cuts
+                its corner (`TimedPlan.corner_cut`); by less than the proven clearance, or the jump
                 is refused.
 
         Raises:

@@ -108,7 +108,7 @@ def refine(plan: Plan) -> Plan:
     nominal = plan.lattice.nominal
     prover = Prover(nominal, plan.problem.scene, plan.problem.tolerance)
     offsets = plan.motion.positions - nominal.positions
-    refined = refined_path(plan.lattice, prover, offsets, plan.clearances, plan.objective)
+    refined = refined_path(plan.lattice, prover, offsets, plan.clearances)
     if refined is None:
         return plan
     motion = nominal.displaced(refined.offsets)

@@ -82,12 +82,10 @@ def _within(what: str, path: str, make: Callable[[], T]) -> T:
         return make()
     except InvalidInput as error:
         inner = error.what
-        if isinstance(error, UnknownKey):
-            inner = f"{path}: {inner}" if path else inner
-        elif path and re.match(r"[a-z_]+\b", inner):
-            inner = f"{path}.{inner}"
+        if path and (isinstance(error, UnknownKey) or path.endswith("robot")):
+            inner = f"{path}: {inner}"  # errors of a robot begin with its name
         elif path:
-            inner = path + inner
+            inner = f"{path}.{inner}" if re.match(r"[a-z_]+\b", inner) else path + inner
         raise InvalidInput(f"{what}, {inner}", error.value, error.allowed) from None
     except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as error:
         where = f"{what}, {path}" if path else what
@@ -146,7 +144,7 @@ def _robot(what: str, table: RobotTable) -> SpaceRobot:
     path = f"{what}, problem.robot"
     robot = _within(
         what,
-        "problem.robot: ",
+        "problem.robot",
         lambda: robot_from_urdf(
             table.urdf,
             table.name,

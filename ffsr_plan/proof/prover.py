@@ -23,7 +23,9 @@ from ffsr_plan.proof.motion_edges import (
     ObstacleEdge,
     SelfCollisionEdge,
     joint_configuration,
+    odd_times,
 )
+from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.scene.scene import Scene
 
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
@@ -76,6 +78,54 @@ class Prover:
             (k,) distances to the nearest obstacle [m].
         """
         return self._obstacles.distances_at(self._corners, layers, offsets)
+
+    def half_way(self, layers: IntArray, offsets: Array) -> Array:
+        """Clearances half-way on edges of the displaced motion.
+
+        Args:
+            layers: (k,) edges.
+            offsets: (k, 3) displacements of the base there [m].
+
+        Returns:
+            (k,) distances to the nearest obstacle [m].
+        """
+        return self._obstacles.distances_at(self._placements.between(2), layers, offsets)
+
+    def sampled_edges(
+        self, layers: IntArray, tails: Array, heads: Array, ends: Array
+    ) -> list[Verdict]:
+        """Prove many edges free of obstacles, or refuse them, and sample their clearances.
+
+        An edge is sampled (`sample_edges`) until it is proven free. One that comes closer to an
+        obstacle than the finest step is left to interval halving.
+
+        Args:
+            layers: (k,) the edges.
+            tails: (k, 3) offsets at their starts [m].
+            heads: (k, 3) offsets at their ends [m].
+            ends: (k, 2) clearances at their starts and ends [m].
+
+        Returns:
+            k verdicts with the least clearance computed.
+        """
+        speeds = np.linalg.norm(self._steps[layers] + heads - tails, axis=1) + self.speeds[layers]
+
+        def measure(which: IntArray, parts: int) -> Array:
+            times = odd_times(parts)[:, None]
+            rows = np.arange(len(times))[:, None] * self._motion.edges + layers[which]
+            offsets = (1.0 - times[..., None]) * tails[which] + times[..., None] * heads[which]
+            placed = self._placements.between(parts)
+            found = self._obstacles.distances_at(placed, rows.ravel(), offsets.reshape(-1, 3))
+            return found.reshape(rows.shape)
+
+        verdicts = sample_edges(measure, ends, speeds, self.rounding, self.tolerance)
+        for k, verdict in enumerate(verdicts):
+            if not verdict.free and verdict.least_clearance > self.tolerance:
+                pair = (float(ends[k, 0]), float(ends[k, 1]))
+                proof = self.certify(int(layers[k]), tails[k], heads[k], pair)
+                least = min(proof[1:3], verdict[1:3])
+                verdicts[k] = Verdict(proof.free, *least, proof.queries + verdict.queries)
+        return verdicts
 
     def base_step(self, layer: int, tail: Array, head: Array) -> Array:
         """Displacement of the base origin over an edge.

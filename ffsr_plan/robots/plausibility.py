@@ -19,6 +19,8 @@ from ffsr_plan.robots.urdf.origins import LARGEST, transform
 LEAST_INERTIA = 1e-9
 """Least principal moment of the base, relative to the robot's mass times its size squared. For a
 smaller one the base turns by a radian while the arms move by less than the integration can see."""
+LIGHTEST = 1e-6
+"""Least mass [kg] of a moving body: Pinocchio loses the centres of mass of lighter ones."""
 _MOST_GYRATION = 10.0  # radius of gyration relative to the body's size; 1 for a body in its shape
 _LEAST_SIZE = 1.0  # [m] counted for slides, whose steps are in metres
 
@@ -64,9 +66,11 @@ def check_bodies(
             f"{where}, root link", f"mass {base.mass:g} kg", "a mass and a full inertia"
         )
     for frame in model.frames:  # a joint's inertia is that of all links fixed to one another
-        if frame.type == pin.FrameType.BODY and model.inertias[frame.parentJoint].mass <= 0.0:
+        mass = model.inertias[frame.parentJoint].mass
+        if frame.type == pin.FrameType.BODY and mass < LIGHTEST:
             allowed = "a mass of the moving link or of a link fixed to it"
-            raise InvalidInput(f"{where}, link '{frame.name}'", "0 kg", allowed)
+            allowed += f", at least {LIGHTEST:g} kg" if mass > 0.0 else ""
+            raise InvalidInput(f"{where}, link '{frame.name}'", f"{mass:g} kg", allowed)
     found = bodies(robot, collision)
     reach = float(np.sum([body.size for body in found if np.isfinite(body.size)]))
     _check_gyration(found, where, reach)

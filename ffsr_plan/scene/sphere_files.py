@@ -27,6 +27,8 @@ UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3}
 BYTES_PER_SPHERE = 800
 """Memory [bytes] that a sphere takes at most while its file is read and its tree is built."""
 _LONGEST_LINE = 10_000
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_LONGEST_HEADER = 100
 _HEADER = re.compile(r"\s*(\w+)\s*(?:\[\s*(\w+)\s*\])?\s*")
 
 
@@ -157,7 +159,7 @@ def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:
     """Position of each of `COLUMNS` in the table, and the metres in its unit."""
     names, units = [], []
     for cell in cells:
-        match = _HEADER.fullmatch(cell)
+        match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_HEADER else None
         name = match.group(1) if match else cell
         if name not in COLUMNS:
             raise unknown_name(f"{what}, header", cell, COLUMNS)
@@ -177,10 +179,7 @@ def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:
 
 def _number(what: str, column: str, text: str) -> float:
     allowed = "a finite number" + (" greater than 0" if column == "radius" else "")
-    try:
-        value = float(text)
-    except ValueError:
-        raise InvalidInput(what, text, allowed) from None
+    value = float(text) if _NUMBER.fullmatch(text) else math.nan
     if not math.isfinite(value) or (column == "radius" and value <= 0.0):
         raise InvalidInput(what, text, allowed)
     return value

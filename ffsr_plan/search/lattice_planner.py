@@ -91,7 +91,7 @@ class LatticePlanner(ABC):
         length = roadmap.path_length(result.path)
         if request.refine is not False:
             refined = refined_path(
-                lattice, prover, offsets, clearances, objective, request.stop_requested
+                lattice, prover, offsets, clearances, roadmap.nodes, request.stop_requested
             )
             if refined is not None:
                 offsets, clearances, length, objective, spent = refined

@@ -39,7 +39,7 @@ def plan(robot):
 def calls(plan, tmp_path_factory):
     """Public functions and methods with good arguments for them, by name."""
     folder = tmp_path_factory.mktemp("wrong")
-    problem, motion = plan.problem, plan.motion
+    problem = plan.problem
     robot, scene, q = problem.robot, problem.scene, problem.start
     flight = plan.timed(**FIELDS)
     view = {"port": 0, "open_browser": False}
@@ -156,7 +156,7 @@ def finish(result):
 def test_wrong_arguments_are_refused_by_errors_of_the_package(calls, tmp_path, monkeypatch):
     monkeypatch.setattr(webbrowser, "get", no_browser)
     monkeypatch.chdir(tmp_path)  # some of the values are names of files that can be written
-    tried, escaped = 0, []
+    tried, escaped, sentences = 0, [], []
     for function, arguments in calls.items():
         finish(function(**arguments))
         for name, value in itertools.product(arguments, ODD_VALUES):
@@ -164,11 +164,12 @@ def test_wrong_arguments_are_refused_by_errors_of_the_package(calls, tmp_path, m
             try:
                 finish(function(**arguments | {name: value}))
             except fp.FfsrPlanError as error:
-                assert str(error).isprintable()
+                sentences.append(str(error))
             except Exception as error:
                 shown = f"{type(value).__name__} {str(value)[:20]!r}"
                 escaped.append(f"{function.__qualname__}({name}={shown}): {error!r:.120}")
     assert not escaped, f"{len(escaped)}: " + "\n".join(escaped[:40])
+    assert all(sentence.isprintable() for sentence in sentences)
     assert tried > 5000
 
 

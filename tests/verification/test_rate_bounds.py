@@ -9,7 +9,8 @@ from ffsr_plan.verification.motion_samples import base_frame_poses
 from ffsr_plan.verification.rate_bounds import RateBounds
 from ffsr_plan.verification.sweep import _Sweep
 from ffsr_plan.verification.urdf_reading import Bodies
-from tests.verification.test_hidden_contacts import MODES, careless_plan, placed
+from tests.helpers.careless_plans import MODES, careless_plan, placed
+from tests.helpers.urdf_builders import inertial, joint, link, sphere, urdf
 
 STEPS = 40
 
@@ -76,3 +77,16 @@ def test_reactions_by_bodies_are_those_of_the_planner(seed):
     bodies = Bodies(robot.urdf)
     found = momentum_map(bodies, robot.joint_names, base_frame_poses(plan, bodies, q))
     assert np.allclose(found.reactions, connections(robot, values), atol=1e-12)
+
+
+def test_the_bound_of_a_stretched_arm_is_the_speed_of_its_tip():
+    body = inertial(1.0, (1.0, 1.0, 1.0))
+    text = urdf(
+        link("base", body), link("arm", body), link("hand", body, sphere(0.1, (0.5, 0, 0))),
+        joint("shoulder", "revolute", "base", "arm", (0.2, 0, 0)),
+        joint("elbow", "revolute", "arm", "hand", (0.7, 0, 0)),
+    )  # fmt: skip
+    values = np.array([[0.0, 0.0], [0.3, -0.4], [0.3, 0.0]])
+    bounds = RateBounds(Bodies(text), ("shoulder", "elbow"), values)
+    assert np.allclose(bounds.shapes[:, 0], [0.3 * 1.3 + 0.4 * 0.6, 0.4 * 0.6])
+    assert np.allclose(bounds.reach, 1.5)

@@ -29,7 +29,7 @@ _BYTES_PER_STEP = 100  # rotation, squared length and pheromone of a joint step
 _BYTES_PER_SHAPE = 450  # placements of a shape at a node
 _BYTES_PER_OFFSET_EDGE = 30  # pheromone, ants and what they lay
 _JOINT_STEP = 0.1  # [rad or m] for which the base reaction is worked out at eight points
-_SECONDS_PER_POINT = 4e-6  # for each joint, base reaction at one point
+_SECONDS_PER_POINT = 1e-5  # for each joint, base reaction at one point
 _SECONDS_PER_PAIR = 4e-6  # distance of two links
 
 
