@@ -245,7 +245,7 @@ def test_ctrl_c_on_a_terminal_ends_all_workers_quietly(group, presses):
     out, err = group.communicate(timeout=60)
     if group.returncode == 0:
         assert out == "True\n"
-        assert not err
+        assert [line for line in err.splitlines() if "compiling" not in line] == []
     else:
         assert group.returncode == -signal.SIGINT, err
         assert err.count("Traceback") == 1, err
