@@ -96,10 +96,8 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     Raises:
         InvalidInput: `samples` is not a positive integer, or too large.
     """
-    divisions = plan.problem.lattice.divisions
-    samples = whole_number(
-        "samples", samples, at_least=1, at_most=max(1, _MOST_EVEN_SAMPLES // divisions)
-    )
+    most = max(1, _MOST_EVEN_SAMPLES // plan.problem.lattice.divisions)
+    samples = whole_number("samples", samples, at_least=1, at_most=most)
     if on_progress is not None and not callable(on_progress):
         raise InvalidInput("on_progress", on_progress, "a function, or None")
     problem = plan.problem
@@ -111,6 +109,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     drift = swept.drift if problem.mode.floats else None
     with np.errstate(over="ignore", invalid="ignore"):  # absurd weights give infinite lengths
         costs, path = recompute(plan, bodies, swept.nodes), LatticePath(plan)
+        contradictions = path.problems(bodies, swept.nodes) if swept.finite else []
     problems = (
         *_bad_input(plan, bodies),
         *_collisions(plan, swept),
@@ -118,7 +117,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         *_broken_momentum(residual, wheel_error, drift),
         *_ends_and_limits(plan),
         *_other_costs(plan, costs),
-        *(path.problems(bodies, swept.nodes) if swept.finite else ()),
+        *contradictions,
     )
     least = swept.clearance.value if swept.clearance else np.inf
     gap = swept.separation.value if swept.separation else np.inf
