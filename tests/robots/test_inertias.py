@@ -5,7 +5,7 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.robots.loading import robot_from_urdf
-from ffsr_plan.robots.model_checks.plausibility import LEAST_INERTIA
+from ffsr_plan.robots.plausibility import LEAST_INERTIA
 from ffsr_plan.robots.urdf.inertias import balanced, principal_moments, tensor_fault
 from tests.helpers.urdf_builders import box, inertial, joint, link, urdf
 

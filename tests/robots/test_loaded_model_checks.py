@@ -6,7 +6,7 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.robots.collision_shapes import Containers, collision_geometry
-from ffsr_plan.robots.model_checks.comparison import compare
+from ffsr_plan.robots.loaded_model_checks import compare
 from ffsr_plan.robots.pinocchio_models import build_model
 from ffsr_plan.robots.urdf.canonical import read_urdf
 from tests.helpers.urdf_builders import box, cylinder, inertial, joint, link, sphere, urdf

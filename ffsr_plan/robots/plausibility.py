@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.robots.model_checks.comparison import Placed, combined, end, placed_links
+from ffsr_plan.robots.loaded_model_checks import Placed, combined, end, placed_links
 from ffsr_plan.robots.urdf.known_elements import SHAPES
 from ffsr_plan.robots.urdf.number_texts import attribute_numbers
 from ffsr_plan.robots.urdf.origins import LARGEST, transform

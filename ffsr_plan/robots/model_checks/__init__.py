@@ -1,1 +1,0 @@
-"""Checks of a loaded robot: against its URDF, and for plausibility."""
