@@ -61,8 +61,9 @@ class EdgeClearances:
             offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
             clearances: (m + 1,) at the nodes [m].
         """
-        verdicts = self.of_path(offsets, clearances)
-        least = np.array([v.least_clearance if v.free else 0.0 for v in verdicts])
+        least = np.array(
+            [v.least_clearance if v.free else 0.0 for v in self.of_path(offsets, clearances)]
+        )
         return motion_objective(self._problem, path_length(self._problem, offsets), least)
 
     def counts(self, node_queries: int, queries: int) -> Counts:
