@@ -49,13 +49,20 @@ def robot_table(robots: Iterable[RobotSummary]) -> Table:
     table = Table("robot", "kg", "reach", "postures", "joints", show_lines=True)
     for robot in robots:
         table.add_row(
-            f"{robot.name}\n{counted(len(robot.joint_names), 'joint')}",
+            "\n".join(_robot_words(robot)),
             f"{robot.mass:.4g}",
             f"{robot.reach_bound:.2f} m",
             "\n".join(robot.postures),
             "\n".join(robot.joint_names),
         )
     return table
+
+
+def _robot_words(robot: RobotSummary) -> Iterator[str]:
+    yield robot.name
+    yield counted(len(robot.joint_names), "joint")
+    if robot.unchecked_links:
+        yield f"not checked: {', '.join(robot.unchecked_links)}"
 
 
 def report_rows(report: Report) -> Iterator[tuple[str, str]]:
@@ -76,6 +83,8 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
         yield "  centre of mass", f"moves by at most {report.center_drift:.1e} m"
     if report.wheel_momentum_error is not None:
         yield "  wheel momentum error", f"{report.wheel_momentum_error:.1e} relative"
+    if report.unchecked:
+        yield "  links not checked", ", ".join(report.unchecked)
     yield "  not checked", "\n".join(report.not_checked)
 
 

@@ -20,13 +20,14 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, equal_by_content
 from ffsr_plan.core.rotations import cross
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.kinematics import turned
 
 
+@equal_by_content
 class States(NamedTuple):
     """Position, velocity, acceleration and forces of a motion at N instants.
 
@@ -83,7 +84,14 @@ class States(NamedTuple):
         return rotations.rotate(self.attitudes, along)
 
 
-def states(motion: Motion, edge: IntArray, time: Array, pace: Array, acceleration: Array) -> States:
+def states(
+    motion: Motion,
+    edge: IntArray,
+    time: Array,
+    pace: Array,
+    acceleration: Array,
+    push: Array | None = None,
+) -> States:
     """The states of a motion at N instants, given its pace.
 
     Args:
@@ -92,6 +100,7 @@ def states(motion: Motion, edge: IntArray, time: Array, pace: Array, acceleratio
         time: (N,) times sigma on the edges, in [0, 1].
         pace: (N,) sigma' [1/s].
         acceleration: (N,) sigma'' [1/s^2].
+        push: (N, 3) further acceleration of the base by thrusters, world axes [m/s^2], or None.
 
     Returns:
         The states, forces included.
@@ -99,6 +108,8 @@ def states(motion: Motion, edge: IntArray, time: Array, pace: Array, acceleratio
     q, joints = motion.at(edge, time), motion.joints_at(edge, time)
     to_base = np.swapaxes(rotations.matrix(q[:, 3:7]), 1, 2)
     v, a = _prescribed(motion, edge, to_base, pace, acceleration)
+    if push is not None:
+        a[:, :3] += turned(to_base, push)
     efforts, stored = _efforts(motion, q, v, a, to_base)
     force, moment, torques = efforts[:, :3], efforts[:, 3:6], efforts[:, 6:]
     thrust = wheel_torque = np.zeros((len(q), 3))

@@ -1,32 +1,43 @@
-"""Refinement of a certified lattice path to offsets between the nodes; F never rises.
+"""Refinement of a certified lattice path to offsets between the nodes.
 
-Lattice paths are a little too long because their slopes come in steps. On four levels, each with
-half the spacing of the one before, every layer is given the offsets around its present one, and the
-exact optimum over them is taken, edges certified lazily; this is repeated while F falls and a
-node lies on the rim of its offsets.
+Lattice paths are a little too long because their slopes come in steps. And as F contains clearances
+at the nodes only, they may pass an obstacle closely between two nodes, the more so the larger delta
+is. Refinement lowers F of the whole motion (`problem.objective`); at delta = 0 that is F itself,
+the length.
+
+Where delta > 0, the path over the lattice's own offsets that is best in this measure comes first.
+Then, on four levels, each with half the spacing of the one before, every layer is given the offsets
+around its present one, and the best path over them is taken; this is repeated while the value falls
+and a node lies on the rim of its offsets.
 """
 
 from __future__ import annotations
 
-from itertools import pairwise, product
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
+from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
+from ffsr_plan.lattice.band_search import NO_GAIN, BandSearch
 from ffsr_plan.lattice.certificate import Counts
-from ffsr_plan.lattice.edge_states import REFUSED
+from ffsr_plan.lattice.edge_clearances import EdgeClearances
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
-from ffsr_plan.lattice.roadmap import rule_out
-from ffsr_plan.lattice.shortest_path import LazyShortestPath
-from ffsr_plan.problem.objective import nearness, objective, path_length
-from ffsr_plan.proof.interval_halving import Verdict, certify
+from ffsr_plan.lattice.node_clearances import NodeClearances
+from ffsr_plan.lattice.offset_band import OffsetBand
+from ffsr_plan.problem.objective import objective, path_length
 from ffsr_plan.proof.prover import Prover
 
 _LEVELS = 4
 _FINEST = 2**_LEVELS
 _ROUNDS = 8
-_REACH = 2  # offsets to either side, so five a layer and axis
+_CANDIDATES = 10  # paths evaluated in a round, where delta > 0
+_EXHAUSTIVE = 10**6
+_WORTH_A_ROUND = 1e-4  # relative gain after which another round is made, where delta > 0
+# offsets to either side of the path, by number of axes
+_REACH_OF_SHORTEST = (2, 2)  # at delta = 0
+_REACH = (2, 1)  # where delta > 0
+_REACH_ON_LATTICE = (40, 2)  # in the first round
 
 
 class RefinedPath(NamedTuple):
@@ -36,7 +47,7 @@ class RefinedPath(NamedTuple):
         offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
         clearances: (m + 1,) at the nodes [m].
         length: L of Eq. 6 [m].
-        objective: F of Eq. 8 [length units], lower than before.
+        objective: F of Eq. 8 [length units], with the clearances at the nodes.
         counts: edges and queries that the refinement took.
     """
 
@@ -48,9 +59,14 @@ class RefinedPath(NamedTuple):
 
 
 def refined_path(
-    lattice: LayeredLattice, prover: Prover, offsets: Array, clearances: Array, objective: float
+    lattice: LayeredLattice,
+    prover: Prover,
+    offsets: Array,
+    clearances: Array,
+    nodes: NodeClearances | None = None,
+    stop_requested: Callable[[], bool] = bool,
 ) -> RefinedPath | None:
-    """Move a proven path off the lattice to where F is lower; None where F does not fall.
+    """Move a proven path to where F of the whole motion is lower; None where it does not fall.
 
     Offsets stay within the lattice's window, in steps of a sixteenth of its spacing.
 
@@ -59,37 +75,43 @@ def refined_path(
         prover: proofs along the lattice's nominal motion.
         offsets: (m + 1, 3) of the path [m].
         clearances: (m + 1,) at its nodes [m].
-        objective: F of the path [length units].
+        nodes: clearances of the lattice's nodes as far as they are known; they save queries.
+        stop_requested: asked between rounds; whether to end with what has been reached.
     """
-    if not lattice.problem.lattice.axes:
+    problem = lattice.problem
+    if not problem.lattice.axes:
         return None  # one node a layer: there is no offset to change
-    descent = _Descent(lattice, prover, offsets, clearances, objective)
+    descent = _Descent(lattice, prover, offsets, clearances)
+    before = descent.value
+    axes = len(problem.lattice.axes) - 1
+    reach, candidates = _REACH_OF_SHORTEST[axes], _EXHAUSTIVE
+    if problem.delta > 0.0:
+        if nodes is not None:
+            descent.learn(nodes.known, nodes.bounds, lattice.indices)
+        descent.improve_on_lattice(_REACH_ON_LATTICE[axes])
+        reach, candidates = _REACH[axes], _CANDIDATES
     for level in range(1, _LEVELS + 1):
         for _ in range(_ROUNDS):
-            if not descent.improve(_FINEST // 2**level):
+            if stop_requested() or not descent.improve(_FINEST // 2**level, reach, candidates):
                 break
-    if not descent.objective < objective:
+    if not descent.value < before:
         return None
     moved = descent.coordinates @ descent.unit
+    length = path_length(problem, moved)
     return RefinedPath(
         offsets=moved,
         clearances=frozen(descent.clearances),
-        length=path_length(lattice.problem, moved),
-        objective=descent.objective,
+        length=length,
+        objective=objective(problem, length, descent.clearances),
         counts=descent.counts(),
     )
 
 
 class _Descent:
-    """A path in whole sixteenths of the lattice's spacing, going down in F."""
+    """A path in whole sixteenths of the lattice's spacing; F of its whole motion goes down."""
 
     def __init__(
-        self,
-        lattice: LayeredLattice,
-        prover: Prover,
-        offsets: Array,
-        clearances: Array,
-        objective: float,
+        self, lattice: LayeredLattice, prover: Prover, offsets: Array, clearances: Array
     ) -> None:
         self._problem, self._prover = lattice.problem, prover
         settings = lattice.problem.lattice
@@ -99,89 +121,84 @@ class _Descent:
         self._rim = np.array([a.half_count for a in axes]) * _FINEST
         sizes = np.sum(self.unit**2, axis=1)
         self.coordinates: IntArray = np.rint(offsets @ self.unit.T / sizes).astype(np.int64)
-        self.clearances, self.objective = np.array(clearances), objective
-        self._known: dict[tuple[int, bytes], float] = {}
-        self._verdicts: dict[tuple[int, bytes, bytes], Verdict] = {}
+        self._known: dict[int, float] = {}
+        self._edges = EdgeClearances(lattice.problem, prover)
         self._queries_before, self._node_queries = prover.queries, 0
-        steps = range(-_REACH, _REACH + 1)
-        self._around = np.array(list(product(steps, repeat=len(axes))), dtype=np.int64)
+        self.clearances = np.array(clearances)
+        self.value = self._edges.motion_objective(self.coordinates @ self.unit, self.clearances)
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""
-        free = sum(verdict.free for verdict in self._verdicts.values())
-        return Counts(
-            edges_free=free,
-            edges_refused=len(self._verdicts) - free,
-            node_queries=self._node_queries,
-            edge_queries=self._prover.queries - self._queries_before - self._node_queries,
-        )
+        return self._edges.counts(self._node_queries, self._prover.queries - self._queries_before)
 
-    def improve(self, step: int) -> bool:
-        """Take the best of the offsets around; whether another round may help."""
-        choices, present = self._choices(step)
-        clearances = self._clearances(choices, present)
-        offsets = choices @ self.unit
-        node_costs = np.where(clearances > 0.0, nearness(self._problem, clearances), np.inf)
-        node_costs[[0, -1], 0] = 0.0
-        across = np.linalg.norm(offsets[1:, None] - offsets[:-1, :, None], axis=3)
-        steps = np.sqrt(self._problem.delta_d**2 + (across * self._problem.position_weight) ** 2)
-        status = np.zeros(steps.shape, dtype=np.int8)
-        edge_costs = steps / self._problem.length_unit
-        search = LazyShortestPath(edge_costs, node_costs, status, 0)
-        path = search.path()
-        while path is not None:
-            refused = self._refused_layer(path, choices, offsets, clearances, status)
-            if refused is None:
-                break
-            path = search.path(refused)
+    def learn(self, known: Flags, clearances: Array, indices: IntArray) -> None:
+        """Take over clearances of lattice nodes, so that they are not measured again.
+
+        Args:
+            known: (m + 1, n) the nodes whose clearance is known.
+            clearances: (m + 1, n) at these nodes [m].
+            indices: (n, axes) offset of each node in the lattice's spacing.
+        """
+        layers, nodes = np.nonzero(known & (clearances > -np.inf))
+        names = self._names(layers, indices[nodes] * _FINEST)
+        self._known |= zip(names, clearances[layers, nodes].tolist(), strict=True)
+
+    def improve_on_lattice(self, most: int) -> None:
+        """Take the best path over the offsets of the lattice.
+
+        Args:
+            most: offsets to either side of the path; at the rim, farther on one side.
+        """
+        reach = np.minimum(most, self._rim // _FINEST)
+        inner = self._rim - reach * _FINEST
+        self._take_best(np.clip(self.coordinates, -inner, inner), _FINEST, reach, _EXHAUSTIVE)
+
+    def improve(self, step: int, reach: int, candidates: int) -> bool:
+        """Take the best of the offsets around the path; whether another round may help.
+
+        Args:
+            step: distance between two offsets, in sixteenths of the spacing.
+            reach: offsets to either side of the path.
+            candidates: number of paths to evaluate at most.
+        """
+        before, value = self.coordinates, self.value
+        self._take_best(before, step, np.full(len(self._rim), reach), candidates)
+        if self._problem.delta > 0.0 and self.value > value * (1.0 - _WORTH_A_ROUND):
+            return False
+        return bool(np.any(np.abs(self.coordinates - before) == reach * step))
+
+    def _take_best(self, middle: IntArray, step: int, reach: IntArray, candidates: int) -> None:
+        """Take the best path over the offsets around `middle` (m + 1, axes) if it is better."""
+        band = OffsetBand(self._problem, middle, self._rim, self.unit, step, reach)
+        clearances = self._measured(band)
+        search = BandSearch(self._problem, self._edges, band, clearances, self.value)
+        path = search.best_path(candidates)
         if path is None:
-            return False
+            return
         layers = np.arange(len(path))
-        coordinates, ends = choices[layers, path], clearances[layers, path]
-        length = path_length(self._problem, coordinates @ self.unit)
-        value = objective(self._problem, length, ends)
-        if not value < self.objective * (1.0 - 1e-12):
-            return False
-        moved = np.abs(coordinates - self.coordinates)
-        self.coordinates, self.clearances, self.objective = coordinates, ends, value
-        return bool(np.any(moved == _REACH * step))
+        coordinates, ends = band.choices[layers, path], clearances[layers, path]
+        value = self._edges.motion_objective(coordinates @ self.unit, ends)
+        if value < self.value * NO_GAIN:
+            self.coordinates, self.clearances, self.value = coordinates, ends, value
 
-    def _choices(self, step: int) -> tuple[IntArray, Flags]:
-        """(m + 1, w, axes) offsets around the present ones, and which of them are allowed."""
-        choices = self.coordinates[:, None] + step * self._around
-        present = np.all(np.abs(choices) <= self._rim, axis=2)
-        for end in (0, -1):
-            choices[end], present[end] = self.coordinates[end], False
-            present[end, 0] = True
-        return choices, present
-
-    def _clearances(self, choices: IntArray, present: Flags) -> Array:
-        """(m + 1, w) clearances, -inf where an offset is not allowed; each asked for once."""
-        clearances = np.full(present.shape, -np.inf)
-        for i, k in zip(*np.nonzero(present), strict=True):
-            key = (int(i), choices[i, k].tobytes())
-            if key not in self._known:
-                at = choices[i, k][None] @ self.unit
-                before = self._prover.queries
-                self._known[key] = float(self._prover.clearances(np.array([i]), at)[0])
-                self._node_queries += self._prover.queries - before
-            clearances[i, k] = self._known[key]
+    def _measured(self, band: OffsetBand) -> Array:
+        """(m + 1, w) clearances, -inf where an offset is not allowed; each measured once."""
+        layers, nodes = np.nonzero(band.present)
+        names = self._names(layers, band.choices[layers, nodes])
+        missing = [k for k, name in enumerate(names) if name not in self._known]
+        if missing:
+            before = self._prover.queries
+            at = band.offsets[layers[missing], nodes[missing]]
+            found = self._prover.clearances(layers[missing], at)
+            self._node_queries += self._prover.queries - before
+            self._known |= zip([names[k] for k in missing], found.tolist(), strict=True)
+        clearances = np.full(band.present.shape, -np.inf)
+        clearances[layers, nodes] = [self._known[name] for name in names]
         return clearances
 
-    def _refused_layer(
-        self, path: IntArray, choices: IntArray, offsets: Array, clearances: Array, status: States
-    ) -> int | None:
-        """Certify the edges of a path; set refusals in `status`, return the first one's layer."""
-        for i, (a, b) in enumerate(pairwise(path)):
-            key = (i, choices[i, a].tobytes(), choices[i + 1, b].tobytes())
-            verdict = self._verdicts.get(key)
-            if verdict is None:
-                ends = (float(clearances[i, a]), float(clearances[i + 1, b]))
-                edge = self._prover.obstacle_edge(i, offsets[i, a], offsets[i + 1, b])
-                verdict = certify(edge, ends, self._prover.tolerance)
-                self._verdicts[key] = verdict
-            if not verdict.free:
-                status[i, a, b] = REFUSED
-                rule_out(status[i], offsets[i], offsets[i + 1], (int(a), int(b)), verdict)
-        refused = status[np.arange(len(path) - 1), path[:-1], path[1:]] == REFUSED
-        return int(np.argmax(refused)) if refused.any() else None
+    def _names(self, layers: IntArray, offsets: IntArray) -> list[int]:
+        """One number for each layer (k,) and offset (k, axes)."""
+        names = layers
+        for column, rim in zip(offsets.T, self._rim, strict=True):
+            names = names * (2 * rim + 1) + column + rim
+        return list(names.tolist())

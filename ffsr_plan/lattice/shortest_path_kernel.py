@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray, States
+from ffsr_plan.core.arrays import Array, Flags, IntArray, States
 from ffsr_plan.core.compilation import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
 
@@ -43,3 +43,34 @@ def extend(
                     before[i + 1, k] = j
         for k in range(n):
             costs[i + 1, k] += node_costs[i + 1, k]
+
+
+@kernel
+def promising(costs: Array, most: float) -> Flags:
+    """The edges of paths, from first node to first node, that are cheaper than `most`.
+
+    Args:
+        costs: (m, w, w) of the edges, infinite where there is none.
+        most: cost that a path has to stay below.
+
+    Returns:
+        (m, w, w) whether the cheapest path over an edge is cheaper.
+    """
+    m, w = costs.shape[0], costs.shape[1]
+    before, after = np.full((m + 1, w), np.inf), np.full((m + 1, w), np.inf)
+    before[0, 0] = after[m, 0] = 0.0
+    for i in range(m):
+        for j in range(w):
+            if before[i, j] < np.inf:
+                for k in range(w):
+                    before[i + 1, k] = min(before[i + 1, k], before[i, j] + costs[i, j, k])
+    for i in range(m - 1, -1, -1):
+        for j in range(w):
+            for k in range(w):
+                after[i, j] = min(after[i, j], costs[i, j, k] + after[i + 1, k])
+    found = np.zeros(costs.shape, dtype=np.bool_)
+    for i in range(m):
+        for j in range(w):
+            for k in range(w):
+                found[i, j, k] = before[i, j] + costs[i, j, k] + after[i + 1, k] < most
+    return found

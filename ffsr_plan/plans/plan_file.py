@@ -35,6 +35,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
                 "centers": problem.scene.centers.tolist(),
                 "radii": problem.scene.radii.tolist(),
                 "excess": problem.scene.excess,
+                "sources": [list(source) for source in problem.scene.sources],
             },
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),
@@ -81,9 +82,13 @@ def write(plan: PlanData, path: Path) -> None:
     Raises:
         InvalidInput: a file that cannot be written.
     """
+    write_text("plan file", path, to_text(plan))
+
+
+def to_text(plan: PlanData) -> str:
+    """The text of a plan file, digest included."""
     data = to_dict(plan)
-    text = json.dumps({"sha256": digest(data), **data}, allow_nan=False, indent=1)
-    write_text("plan file", path, text)
+    return json.dumps({"sha256": digest(data), **data}, allow_nan=False, indent=1)
 
 
 def read(path: Path) -> PlanData:

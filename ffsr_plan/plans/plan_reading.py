@@ -116,7 +116,11 @@ def _check_sizes(what: str, table: PlanTable) -> None:
 def _problem(what: str, table: ProblemTable) -> Problem:
     scene = table.scene
     robot = _robot(what, table.robot)
-    made = _within(what, "problem.scene", lambda: Scene(scene.centers, scene.radii, scene.excess))
+    made = _within(
+        what,
+        "problem.scene",
+        lambda: Scene(scene.centers, scene.radii, scene.excess, scene.sources),
+    )
     return _within(
         what,
         "problem",
@@ -150,6 +154,7 @@ def _robot(what: str, table: RobotTable) -> SpaceRobot:
             srdf=table.srdf,
             containers=Containers(table.containers.meshes, table.containers.cylinders),
             meshes=table.meshes,
+            collision="ignore",  # the URDF of a plan was accepted when the plan was made
         ),
     )
     remade = robot_table(robot)

@@ -146,16 +146,17 @@ class RobotTable:
     replacements: tuple[ReplacementTable, ...]
 
 
-@settings(eq=False)
+@settings
 class SceneTable:
-    """Obstacles; files of older versions have no excess."""
+    """Obstacles; files of older versions have neither excess nor sources."""
 
     centers: Annotated[Any, Columns((2,))]
     radii: Annotated[Any, Columns()]
     excess: Annotated[float, Number(at_least=0.0)] = 0.0
+    sources: Annotated[Any, AnyValue()] = ()
 
 
-@settings(eq=False)
+@settings
 class ProblemTable:
     """A problem; what is not a table of its own is checked by `Problem`."""
 
@@ -174,7 +175,7 @@ class ProblemTable:
     reach_attitude: Annotated[Any, AnyValue()]
 
 
-@settings(eq=False)
+@settings
 class MotionTable:
     """The corners of a motion."""
 
@@ -182,7 +183,7 @@ class MotionTable:
     joint_values: Annotated[Any, Columns((2,))] | None
 
 
-@settings(eq=False)
+@settings
 class HistoryTable:
     """Progress of a search."""
 
@@ -192,7 +193,7 @@ class HistoryTable:
     distinct: Annotated[Any, Columns(whole=True)]
 
 
-@settings(eq=False)
+@settings
 class TrailsTable:
     """Edges that ants walked."""
 
@@ -215,7 +216,7 @@ class CertificateTable:
     least_clearance: Annotated[float, Number(at_least=-1e-6)] | None
 
 
-@settings(eq=False)
+@settings
 class PlanTable:
     """A whole plan file, without its digest."""
 

@@ -1,4 +1,9 @@
-"""Length L and objective F of a path (Eqs. 6 and 8)."""
+"""Length L and objective F of a path (Eqs. 6 and 8), and F of the whole motion.
+
+F contains the clearances at the nodes. Between two nodes a path may pass an obstacle closely at no
+cost. In F of the whole motion the sum is over the edges, each with its least clearance. Where the
+clearance hardly changes over an edge, both sums are alike.
+"""
 
 from __future__ import annotations
 
@@ -58,3 +63,17 @@ def objective(problem: Problem, length: float, clearances: Array) -> float:
         F [length units].
     """
     return length / problem.length_unit + float(np.sum(nearness(problem, clearances[1:-1])))
+
+
+def motion_objective(problem: Problem, length: float, clearances: Array) -> float:
+    """F of the whole motion: L + delta sum over all edges of 1 / (least clearance on the edge).
+
+    Args:
+        problem: gives delta, the length unit and the cap.
+        length: L [m].
+        clearances: (m,) least clearances on the edges [m].
+
+    Returns:
+        The value [length units], infinite if a clearance is not above zero.
+    """
+    return length / problem.length_unit + float(np.sum(nearness(problem, clearances)))

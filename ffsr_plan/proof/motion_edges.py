@@ -18,6 +18,7 @@ class NominalPlacements:
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
         self._known: dict[float, Placements] = {}
+        self._levels: dict[int, Placements] = {}
 
     def at(self, time: float) -> Placements:
         """Placements on every edge at one time; row k belongs to edge k.
@@ -26,13 +27,33 @@ class NominalPlacements:
         of halving next, so all of that level are computed together.
         """
         if time not in self._known:
-            times = _of_same_level(time)
-            edges = self._motion.edges
-            q = self._motion.at(np.tile(np.arange(edges), len(times)), np.repeat(times, edges))
-            frames = shape_placements(self._motion.robot, q).frames
-            parts = frames.reshape(len(times), edges, *frames.shape[1:])
-            self._known |= zip(times.tolist(), map(Placements, parts), strict=True)
+            parts = _level_of(time)
+            if parts is None:
+                self._known[time] = self._over(np.array([time]))
+            else:
+                self.between(parts)
         return self._known[time]
+
+    def between(self, parts: int) -> Placements:
+        """Placements on every edge at the times 1, 3, 5, ... over `parts`.
+
+        Args:
+            parts: 2, 4, 8 or 16.
+
+        Returns:
+            Placements, of which row (number of the time) x m + k belongs to edge k.
+        """
+        if parts not in self._levels:
+            times, edges = odd_times(parts), self._motion.edges
+            self._levels[parts] = placed = self._over(times)
+            each = placed.frames.reshape(len(times), edges, *placed.frames.shape[1:])
+            self._known |= zip(times.tolist(), map(Placements, each), strict=True)
+        return self._levels[parts]
+
+    def _over(self, times: Array) -> Placements:
+        edges = self._motion.edges
+        q = self._motion.at(np.tile(np.arange(edges), len(times)), np.repeat(times, edges))
+        return shape_placements(self._motion.robot, q)
 
 
 class ObstacleEdge:
@@ -152,10 +173,13 @@ def joint_configuration(motion: Motion, layer: int, time: float) -> Array:
     return motion.robot.assemble(np.zeros(3), rotations.IDENTITY, joints)
 
 
-def _of_same_level(time: float) -> Array:
-    """The dyadic times on the same level of halving as `time`; below 1/16 `time` alone."""
-    for parts in (1, 2, 4, 8, 16):
-        if (time * parts).is_integer():
-            step = 1.0 / parts
-            return np.arange(step, 1.0, 2.0 * step) if parts > 1 else np.array([time])
-    return np.array([time])
+def odd_times(parts: int) -> Array:
+    """(parts / 2,) the times 1, 3, 5, ... over `parts`, which is even."""
+    return np.arange(1, parts, 2) / parts
+
+
+def _level_of(time: float) -> int | None:
+    """The level of halving that a time inside an edge is on; None for other times and levels."""
+    levels = (parts for parts in (1, 2, 4, 8, 16) if (time * parts).is_integer())
+    level = next(levels, 1)
+    return level if level > 1 else None

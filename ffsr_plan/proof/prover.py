@@ -10,10 +10,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_collision
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.errors import GoalInCollision, NoPath, StartInCollision
+from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
@@ -22,7 +23,9 @@ from ffsr_plan.proof.motion_edges import (
     ObstacleEdge,
     SelfCollisionEdge,
     joint_configuration,
+    odd_times,
 )
+from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.scene.scene import Scene
 
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
@@ -47,7 +50,7 @@ class Prover:
             scene: the obstacles.
             tolerance: clearance below which an edge may be refused [m].
         """
-        self._motion, self.tolerance = nominal, tolerance
+        self._motion, self._scene, self.tolerance = nominal, scene, tolerance
         self._obstacles = ObstacleQuery(nominal.robot, scene)
         self._self = SelfQuery(nominal.robot)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
@@ -75,6 +78,54 @@ class Prover:
             (k,) distances to the nearest obstacle [m].
         """
         return self._obstacles.distances_at(self._corners, layers, offsets)
+
+    def half_way(self, layers: IntArray, offsets: Array) -> Array:
+        """Clearances half-way on edges of the displaced motion.
+
+        Args:
+            layers: (k,) edges.
+            offsets: (k, 3) displacements of the base there [m].
+
+        Returns:
+            (k,) distances to the nearest obstacle [m].
+        """
+        return self._obstacles.distances_at(self._placements.between(2), layers, offsets)
+
+    def sampled_edges(
+        self, layers: IntArray, tails: Array, heads: Array, ends: Array
+    ) -> list[Verdict]:
+        """Prove many edges free of obstacles, or refuse them, and sample their clearances.
+
+        An edge is sampled (`sample_edges`) until it is proven free. One that comes closer to an
+        obstacle than the finest step is left to interval halving.
+
+        Args:
+            layers: (k,) the edges.
+            tails: (k, 3) offsets at their starts [m].
+            heads: (k, 3) offsets at their ends [m].
+            ends: (k, 2) clearances at their starts and ends [m].
+
+        Returns:
+            k verdicts with the least clearance computed.
+        """
+        speeds = np.linalg.norm(self._steps[layers] + heads - tails, axis=1) + self.speeds[layers]
+
+        def measure(which: IntArray, parts: int) -> Array:
+            times = odd_times(parts)[:, None]
+            rows = np.arange(len(times))[:, None] * self._motion.edges + layers[which]
+            offsets = (1.0 - times[..., None]) * tails[which] + times[..., None] * heads[which]
+            placed = self._placements.between(parts)
+            found = self._obstacles.distances_at(placed, rows.ravel(), offsets.reshape(-1, 3))
+            return found.reshape(rows.shape)
+
+        verdicts = sample_edges(measure, ends, speeds, self.rounding, self.tolerance)
+        for k, verdict in enumerate(verdicts):
+            if not verdict.free and verdict.least_clearance > self.tolerance:
+                pair = (float(ends[k, 0]), float(ends[k, 1]))
+                proof = self.certify(int(layers[k]), tails[k], heads[k], pair)
+                least = min(proof[1:3], verdict[1:3])
+                verdicts[k] = Verdict(proof.free, *least, proof.queries + verdict.queries)
+        return verdicts
 
     def base_step(self, layer: int, tail: Array, head: Array) -> Array:
         """Displacement of the base origin over an edge.
@@ -150,28 +201,35 @@ class Prover:
         """Check that start and goal touch nothing.
 
         Raises:
-            StartInCollision: with link, obstacle and depth.
-            GoalInCollision: with link, obstacle and depth.
+            StartInCollision: with all that touches there, and at the goal.
+            GoalInCollision: with all that touches there.
         """
-        for layer, error in ((0, StartInCollision), (self._motion.edges, GoalInCollision)):
+        robot, scene, goal = self._motion.robot, self._scene, self._motion.edges
+        for layer in (0, goal):
             pairs = (
                 self._obstacles.nearest_at(self._corners, layer, np.zeros(3)),
                 self.nearest_links(layer, 0.0),
             )
-            for nearest in pairs:
-                if nearest.distance <= 0.0:
-                    raise error(nearest.link, nearest.obstacle, -nearest.distance)
+            if min(nearest.distance for nearest in pairs) <= 0.0:
+                configurations = self._motion.configurations()
+                if layer == 0:
+                    raise start_in_collision(robot, scene, configurations[0], configurations[-1])
+                raise goal_in_collision(robot, scene, configurations[-1])
 
-    def check_self_collision(self) -> None:
+    def check_self_collision(self, advice: tuple[str, ...] = ()) -> None:
         """Prove that no links touch each other on any edge, whatever the offsets.
+
+        Args:
+            advice: what may help, for the error.
 
         Raises:
             NoPath: with the first edge on which two links come too close.
         """
         for layer, verdict in enumerate(self.self_verdicts()):
             if not verdict.free:
-                nearest = self.nearest_links(layer, verdict.time)
-                raise NoPath(layer + 1, (nearest.link, str(nearest.obstacle)), self._motion.edges)
+                near = self.nearest_links(layer, verdict.time)
+                links, contacts = (near.link, str(near.obstacle)), (named(self._scene, near),)
+                raise NoPath(layer + 1, links, self._motion.edges, contacts, advice)
 
     def self_verdicts(self) -> list[Verdict]:
         """(m,) for each edge, whether links that must not touch are proven apart."""

@@ -6,16 +6,20 @@ depend on the configuration too. If they exceed their limits, the motion between
 down uniformly by the square root of the excess, because in free flight all forces are proportional
 to the square of the pace.
 
-Pulses at corners of the base's path are modelled as instantaneous. A finite pulse displaces the
-whole robot but does not rotate it, because thrust through the centre of mass carries no angular
-momentum. No point is displaced farther than the base, so a displacement below the proven clearance
-causes no collision.
+Thrusters change the velocity of the base at a corner of its path by a pulse of constant thrust,
+half of it before and half of it after the corner. Pulses count against the limit on thrust: the
+pace is constant meanwhile and pulses do not overlap (`time_law`), and thrust and torques that arms
+in motion need are added to those of the pulse. A pulse displaces the whole robot from its path but
+does not rotate it, because thrust through the centre of mass carries no angular momentum. No point
+is displaced farther than the base, so a displacement below the proven clearance causes no
+collision.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -23,17 +27,20 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.checks import finite_array, number
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.dynamics.inverse_dynamics import States, states
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.trajectory.csv_tables import trajectory_table, write_csv
+from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, trajectory_table, write_csv
 from ffsr_plan.trajectory.flight_limits import FlightLimits, check_limits
 from ffsr_plan.trajectory.straight_runs import StraightRuns, straight_runs
-from ffsr_plan.trajectory.time_law import TimeLaw, time_law
+from ffsr_plan.trajectory.time_law import PulseLimits, TimeLaw, time_law
 
 _NODES = 16  # of Gauss-Lobatto quadrature, which includes both ends of a piece
 _LARGEST_JOINT_STEP = 0.2  # [rad or m] between two sets of quadrature nodes
 _FORCE_MARGIN = 1e-3  # relative margin of forces for peaks between the nodes
+_SAME_FORCE = 1e-9  # relative change over a piece below which a force counts as constant
 _MOST_ROWS = 1_000_000
 
 
@@ -44,19 +51,22 @@ class TimedPlan:
     Attributes:
         motion: the path of the plan.
         delta_v: velocity change that the thrusters produce in translation: the integral of
-            |thrust| / mass plus the pulses [m/s].
+            |thrust| / mass, pulses included [m/s].
         rests: (k,) times at which the robot rests on the path, without start and goal [s].
-        pulse_times: (p,) times of the thrusters' pulses [s].
-        pulses: (p, 3) changes of the base's velocity by them, world axes [m/s].
-        corner_cut: largest displacement of the robot from its path by pulses of finite duration
-            [m]: one of size d lasts d / a, with the limit a on thrust / mass, and cuts its corner
-            by d^2 / 8a. It is less than the clearance proven along the whole motion.
+        pulse_times: (p,) times of the corners that pulses pass, in the middle of each pulse [s].
+        pulse_durations: (p,) durations of the pulses [s].
+        pulses: (p, 3) changes of the base's velocity by them, world axes [m/s]; the acceleration
+            during a pulse is constant.
+        corner_cut: largest displacement of the robot from its path by pulses [m]: one of size d and
+            duration t cuts its corner by d t / 8. It is less than the clearance proven along the
+            whole motion.
     """
 
     motion: Motion
     delta_v: float
     rests: Array
     pulse_times: Array
+    pulse_durations: Array
     pulses: Array
     corner_cut: float
     _law: TimeLaw = field(repr=False)
@@ -81,8 +91,9 @@ class TimedPlan:
     def at(self, times: ArrayLike) -> States:
         """Configurations, velocities, accelerations, thrust and torques.
 
-        Where the acceleration jumps, the value after the jump is returned. Pulses are not part of
-        the accelerations and of the thrust.
+        Where the acceleration jumps, the value after the jump is returned. The states are those on
+        the path: pulses are not part of velocities, accelerations, thrust and torques, and the base
+        velocity jumps at `pulse_times`.
 
         Args:
             times: (N,) times [s].
@@ -119,8 +130,8 @@ class TimedPlan:
         """Write the trajectory as a table with one row for each time and units in the header.
 
         The columns are time, path parameter, base pose, base velocity and acceleration (linear in
-        world axes, angular in base axes), joints, thrust, wheels and torques. An existing file is
-        replaced.
+        world axes, angular in base axes), joints, thrust, wheels and torques. The states are those
+        of `at`, without pulses. An existing file is replaced.
 
         Args:
             path: of the file.
@@ -129,8 +140,10 @@ class TimedPlan:
         Raises:
             InvalidInput: a file that cannot be written, or a rate that is not possible.
         """
-        times = self.clock(rate)
-        write_csv(Path(path), trajectory_table(self.motion.robot, times, self.at(times)))
+        target, times = checked_path("path", path), self.clock(rate)
+        size = {"rows": len(times), "columns": 30 + 5 * self.motion.robot.nd}
+        check_memory("rate", size, BYTES_PER_CELL, "a lower rate")
+        write_csv(target, trajectory_table(self.motion.robot, times, self.at(times)))
 
 
 def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:
@@ -149,85 +162,112 @@ def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:
     if not len(runs.first):
         raise InvalidInput("plan", "one in which nothing moves", "a plan in which something moves")
     check_limits(limits, runs, motion.robot, motion.mode.floats)
-    law, speeds = time_law(runs, limits.along(runs), limits.velocity_jump)
+    law, speeds, lasting = time_law(
+        runs, limits.along(runs), PulseLimits(limits.velocity_jump, limits.acceleration[0])
+    )
     leg = np.cumsum(speeds[:-1] == 0.0) - 1  # of each run: the leg between two rests it is part of
-    push, excess = _efforts(motion, runs, law, limits)
-    worst = np.zeros(leg[-1] + 1)
+    passed = np.flatnonzero(speeds[1:-1] > 0.0)
+    pulses = _Pulses(
+        _corner_times(law, runs)[passed],
+        lasting[1:-1][passed],
+        runs.jumps()[passed] * speeds[1:-1][passed, None] if len(passed) else np.zeros((0, 3)),
+    )
+    push, excess = _efforts(motion, runs, law, limits, pulses.accelerations(law))
+    worst = np.ones(leg[-1] + 1)
     np.maximum.at(worst, leg[law.run], excess)
-    factors = np.where(worst > 1.0, np.sqrt(worst / (1.0 - _FORCE_MARGIN)), 1.0)[leg]
+    factors = np.sqrt(worst)[leg]
     slowed = law.slowed(factors[law.run])
-    passed = speeds[1:-1] > 0.0
-    pulses = _pulses(runs, speeds, factors)
-    sizes = np.linalg.norm(pulses, axis=1)
-    ends = slowed.times[np.searchsorted(law.run, np.arange(1, len(runs.first)))]
-    cut = _corner_cut(ends[passed], sizes, limits.acceleration[0])
-    _check_corner_cut(cut, sizes, limits, clearance)
+    corners, slower = _corner_times(slowed, runs), factors[1:][passed]
+    cut = pulses.corner_cut()
+    _check_corner_cut(cut, limits, clearance)
     return TimedPlan(
         motion=motion,
-        delta_v=float(np.sum(push / factors[law.run]) + np.sum(sizes)),
-        rests=frozen(ends[~passed]),
-        pulse_times=frozen(ends[passed]),
-        pulses=frozen(pulses),
+        delta_v=float(np.sum(push / factors[law.run])),
+        rests=frozen(np.delete(corners, passed)),
+        pulse_times=frozen(corners[passed]),
+        pulse_durations=frozen(pulses.durations * slower),
+        pulses=frozen(pulses.jumps / slower[:, None]),
         corner_cut=cut,
         _law=slowed,
         _runs=runs,
     )
 
 
-def _pulses(runs: StraightRuns, speeds: Array, factors: Array) -> Array:
-    """(p, 3) changes of the base's velocity at corners that are passed without a rest [m/s].
+class _Pulses(NamedTuple):
+    """Pulses at corners of the base's path.
 
-    Args:
-        runs: r straight runs.
-        speeds: (r + 1,) x' between them.
-        factors: (r,) factors by which the runs are slowed down.
+    Attributes:
+        times: (p,) of the corners [s].
+        durations: (p,) [s].
+        jumps: (p, 3) changes of the base's velocity, world axes [m/s].
     """
-    passed = np.flatnonzero(speeds[1:-1] > 0.0)
-    if not len(passed):
-        return np.zeros((0, 3))
-    return runs.jumps()[passed] * (speeds[1:-1] / factors[1:])[passed, None]
+
+    times: Array
+    durations: Array
+    jumps: Array
+
+    def accelerations(self, law: TimeLaw) -> Array:
+        """(K, 3) acceleration of the base by pulses on each piece of a law, world axes [m/s^2]."""
+        middles = (law.times[1:] + law.times[:-1]) / 2.0
+        during = np.abs(middles[:, None] - self.times) < self.durations / 2.0
+        return during @ (self.jumps / self.durations[:, None])
+
+    def corner_cut(self) -> float:
+        """Largest displacement from the path [m]; it does not change if the law is slowed down.
+
+        With the constant acceleration d / t the robot is displaced by d / 2t (t / 2 - |s|)^2 at the
+        time s from the corner.
+        """
+        sizes = np.linalg.norm(self.jumps, axis=1)
+        return float(np.max(sizes * self.durations, initial=0.0)) / 8.0
 
 
-def _check_corner_cut(cut: float, sizes: Array, limits: FlightLimits, clearance: float) -> None:
-    """Raise `InvalidInput` if pulses (p,) [m/s] cut corners by more than the clearance."""
-    if not len(sizes) or cut < clearance:
+def _corner_times(law: TimeLaw, runs: StraightRuns) -> Array:
+    """(r - 1,) times between consecutive runs [s]."""
+    return law.times[np.searchsorted(law.run, np.arange(1, len(runs.first)))]
+
+
+def _check_corner_cut(cut: float, limits: FlightLimits, clearance: float) -> None:
+    """Raise `InvalidInput` if pulses cut corners by more than the clearance."""
+    if cut == 0.0 or cut < clearance:
         return
-    available = max(clearance, 0.0)
-    possible = 0.99 * np.max(sizes) * np.sqrt(available / cut)
+    strength, available = limits.acceleration[0], max(clearance, 0.0)
+    possible = 0.99 * np.sqrt(8.0 * strength * available)
     allowed = (
-        f"about {possible:.2g} m/s or less: thrusters of {limits.acceleration[0]:g} m/s^2 would "
+        f"about {possible:.2g} m/s or less: thrusters of {strength:g} m/s^2 would "
         f"cut a corner by {cut:.3g} m, and the proven clearance is {available:.3g} m"
     )
     raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
 
 
-def _corner_cut(times: Array, sizes: Array, strength: float) -> float:
-    """Largest displacement from the path by pulses (p,) [m/s] at times (p,) [s] [m].
-
-    A pulse of size d has constant thrust for d / a and displaces the robot by a / 2 (d / 2a -
-    |t|)^2. The sum over all pulses is largest at the time of one of them.
-    """
-    if not len(times):
-        return 0.0
-    left = sizes / (2.0 * strength) - np.abs(times[:, None] - times)
-    return float(np.max(np.sum(np.maximum(left, 0.0) ** 2, axis=1)) * strength / 2.0)
-
-
 def _states(
-    motion: Motion, runs: StraightRuns, law: TimeLaw, piece: IntArray, times: Array
+    motion: Motion,
+    runs: StraightRuns,
+    law: TimeLaw,
+    piece: IntArray,
+    times: Array,
+    push: Array | None = None,
 ) -> States:
     x, speed, acceleration = law.on(piece, times)
     edge, time, scale = runs.locate(law.run[piece], x)
-    return states(motion, edge, time, speed / scale, acceleration / scale)
+    return states(motion, edge, time, speed / scale, acceleration / scale, push)
 
 
 def _efforts(
-    motion: Motion, runs: StraightRuns, law: TimeLaw, limits: FlightLimits
+    motion: Motion, runs: StraightRuns, law: TimeLaw, limits: FlightLimits, pushes: Array
 ) -> tuple[Array, Array]:
     """Thrust and force shares of each piece of the law.
 
+    Args:
+        motion: the motion.
+        runs: its straight runs.
+        law: the law.
+        limits: limits on forces.
+        pushes: (K, 3) acceleration of the base by pulses on each piece, world axes [m/s^2].
+
     Returns:
-        (K,) integral of |thrust| / mass [m/s], and (K,) largest ratio of a force to its limit.
+        (K,) integral of |thrust| / mass [m/s], and (K,) largest ratio of a force to its limit, with
+        a margin for peaks between the nodes.
     """
     lengths = np.diff(law.times)
     joint_steps = np.max(np.abs(runs.joints), axis=1, initial=0.0)[law.run] * _lengths(law)
@@ -237,7 +277,8 @@ def _efforts(
     width = (lengths / parts)[owner]
     nodes, weights = _lobatto()
     times = law.times[owner][:, None] + width[:, None] * (part[:, None] + nodes)
-    at_nodes = _states(motion, runs, law, np.repeat(owner, _NODES), times.ravel())
+    piece = np.repeat(owner, _NODES)
+    at_nodes = _states(motion, runs, law, piece, times.ravel(), pushes[piece])
     mass = sum(body.mass for body in list(motion.robot.model.inertias)[1:])
     push = np.linalg.norm(at_nodes.thrust, axis=1) / mass
     share = push / limits.acceleration[0]
@@ -245,7 +286,10 @@ def _efforts(
         share = np.maximum(share, np.max(np.abs(at_nodes.torques) / limits.torque, axis=1))
     sums, most = np.zeros(len(parts)), np.zeros(len(parts))
     np.add.at(sums, owner, width * (push.reshape(-1, _NODES) @ weights))
-    np.maximum.at(most, owner, np.max(share.reshape(-1, _NODES), axis=1))
+    shares = share.reshape(-1, _NODES)
+    peak = np.max(shares, axis=1)
+    varies = peak - np.min(shares, axis=1) > _SAME_FORCE * peak
+    np.maximum.at(most, owner, np.where(varies, peak / (1.0 - _FORCE_MARGIN), peak))
     return sums, most
 
 

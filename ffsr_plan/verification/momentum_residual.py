@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 # central difference of eighth order: weights of the steps 1 .. 4 to either side
 _STENCIL = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])
 _SPACING = 0.05  # step of the differences, as a share of an edge
+_LARGEST_STEP = 0.15  # [rad or m] of a joint over one step of the differences
 _MANY_EDGES = 8  # with fewer edges each is longer, and the step is reduced in proportion
 _SLOW_TURN = 1e-4  # [rad per edge]
 _STATIONS = (0.22, 0.5, 0.78)  # times on each edge at which the momentum is computed
@@ -74,6 +75,8 @@ def _momentum(plan: PlanData, bodies: Bodies, stations: Array) -> tuple[Array, A
     """
     divisions = plan.problem.lattice.divisions
     spacing = _SPACING * min(1.0, divisions / _MANY_EDGES)
+    fastest = float(np.max(np.abs(np.diff(plan.motion.joint_values, axis=0)), initial=0.0))
+    spacing = min(spacing, _LARGEST_STEP / max(fastest, _LARGEST_STEP))
     steps = np.arange(-4, 5) * spacing
     times = stations[:, None] + steps
     q = plan.at(times.ravel() / divisions)

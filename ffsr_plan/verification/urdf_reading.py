@@ -57,6 +57,7 @@ class Bodies:
         root: name of the root link.
         inertials: mass, centre of mass and inertia of each link that has a mass, by name.
         shapes: the collision shapes, in the order of the URDF.
+        unchecked: links with a mass or a visual shape, but no collision shape.
     """
 
     def __init__(self, urdf: str, srdf: str = "", replacements: Sequence[Replacement] = ()) -> None:
@@ -78,6 +79,7 @@ class Bodies:
             for link in root.findall("link")
             for number, collision in enumerate(link.findall("collision"))
         ]
+        seen = {str(link.get("name")) for link in root.findall("link") if link.findall("visual")}
         for link in root.findall("link"):
             for shape in [*link.findall("collision"), *link.findall("visual")]:
                 link.remove(shape)
@@ -93,6 +95,13 @@ class Bodies:
             self._children[joint.parent].append(joint)
         heads = {joint.child for joint in robot.joints}
         self.root = next(link.name for link in robot.links if link.name not in heads)
+        shaped = {name for name, _, _ in self._collisions}
+        self.unchecked = tuple(
+            link.name
+            for link in robot.links
+            if link.name not in shaped
+            and (link.name in seen or (link.inertial and link.inertial.mass > 0.0))
+        )
         self.inertials = {link.name: link.inertial for link in robot.links if link.inertial}
         replaced = {(r.link, r.number): r for r in replacements}
         self.shapes = [

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 MOMENTUM_LIMIT = 1e-9
 """Allowed relative error of angular momentum."""
+GOAL_LIMIT = 1e-6
+"""Allowed error of a demanded goal attitude [rad]."""
 SAMPLES = 50
 """Even samples on each edge by default; more are added where they are needed."""
 _MOST_EVEN_SAMPLES = 10_000_000  # on all edges together, to limit the time
@@ -46,6 +48,8 @@ class Report:
         ok: whether there are no problems.
         problems: one sentence for each violated condition.
         not_checked: one sentence for each part of the plan that was not checked.
+        unchecked: links that have a mass or a visual shape but no collision shape: nothing is known
+            about obstacles in their way.
         least_clearance: least link-to-sphere distance over all samples [m].
         clearance_bound: lower bound on that distance all along the motion, between the samples too,
             from bounds on the travel of all points [m].
@@ -68,6 +72,7 @@ class Report:
     ok: bool
     problems: tuple[str, ...]
     not_checked: tuple[str, ...]
+    unchecked: tuple[str, ...]
     least_clearance: float
     clearance_bound: float
     least_self_separation: float
@@ -127,7 +132,8 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     return Report(
         ok=not problems,
         problems=problems,
-        not_checked=tuple(_not_checked(plan, path)),
+        not_checked=tuple(_not_checked(plan, path, bodies)),
+        unchecked=bodies.unchecked,
         least_clearance=least,
         clearance_bound=float(swept.clearance_bound),
         least_self_separation=gap,
@@ -142,7 +148,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     )
 
 
-def _not_checked(plan: PlanData, path: LatticePath) -> Iterator[str]:
+def _not_checked(plan: PlanData, path: LatticePath, bodies: Bodies) -> Iterator[str]:
     """What the verification takes as the plan has it."""
     robot = plan.problem.robot
     if plan.optimum_is_exact:
@@ -162,8 +168,8 @@ def _not_checked(plan: PlanData, path: LatticePath) -> Iterator[str]:
     if robot.disabled_pairs:
         pairs = ", ".join(f"{a} and {b}" for a, b in robot.disabled_pairs)
         yield f"pairs of links that the SRDF exempts: {pairs}"
-    if unchecked := getattr(robot, "unchecked_links", ()):
-        yield f"links without a shape for collisions: {', '.join(unchecked)}"
+    if bodies.unchecked:
+        yield f"links without a shape for collisions: {', '.join(bodies.unchecked)}"
 
 
 def _bad_input(plan: PlanData, bodies: Bodies) -> list[str]:
@@ -257,9 +263,9 @@ def _ends_and_limits(plan: PlanData) -> list[str]:
         if overlap < 1.0 - AGREEMENT:
             problems.append("the motion does not end at the goal's attitude")
     if problem.reach_attitude:
-        overlap = min(1.0, abs(float(last[3:7] @ problem.goal[3:7])))
-        if (missed := np.degrees(2.0 * np.arccos(overlap))) > 1.0:
-            problems.append(f"the goal's attitude is missed by {missed:.3g} degrees")
+        chord = min(np.linalg.norm(last[3:7] - sign * problem.goal[3:7]) for sign in (1.0, -1.0))
+        if (missed := 4.0 * np.arcsin(0.5 * chord)) > GOAL_LIMIT:
+            problems.append(f"the goal's attitude is missed by {missed:.3g} rad")
     corners = plan.at(np.arange(len(plan.configurations)) / problem.lattice.divisions)
     if np.abs(corners - plan.configurations).max() > AGREEMENT:
         problems.append("the motion does not pass through the plan's configurations")

@@ -29,6 +29,14 @@ def test_a_plan_without_obstacles_saves_and_loads_too(point, tmp_path):
     assert plan.nodes.shape == (5, 2)
 
 
+def test_what_obstacles_come_from_is_saved_and_may_be_absent(fig2a_plan):
+    data = fig2a_plan.to_dict()
+    assert data["problem"]["scene"]["sources"][0] == ["obstacles.0", 1]
+    assert fp.Plan.from_dict(data).problem.scene.sources == fig2a_plan.problem.scene.sources
+    del data["problem"]["scene"]["sources"]  # as in files of version 0.1
+    assert fp.Plan.from_dict(data).problem.scene.sources == ()
+
+
 def test_a_plan_file_cut_short_is_refused(fig2a_plan, tmp_path):
     path = tmp_path / "plan.json"
     fig2a_plan.save(path)

@@ -1,0 +1,92 @@
+"""Least clearances on the edges of displaced motions, each edge proven free or refused."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.lattice.certificate import Counts
+from ffsr_plan.lattice.offset_band import OffsetBand
+from ffsr_plan.problem.objective import motion_objective, path_length
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.proof.prover import Prover
+
+
+class EdgeClearances:
+    """Verdicts on edges between any offsets, each computed once.
+
+    The least clearance is the least of those sampled (`proof.sampled_edges`). At delta = 0, where
+    clearance costs nothing, edges are only proven free.
+    """
+
+    def __init__(self, problem: Problem, prover: Prover) -> None:
+        self._problem, self._prover = problem, prover
+        self._verdicts: dict[tuple[int, bytes, bytes], Verdict] = {}
+
+    def of_path(self, offsets: Array, clearances: Array) -> list[Verdict]:
+        """Verdicts on the m edges of a path.
+
+        Args:
+            offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
+            clearances: (m + 1,) at the nodes [m].
+        """
+        names = [at.tobytes() for at in offsets]
+        keys = [(i, names[i], names[i + 1]) for i in range(len(names) - 1)]
+        unknown = np.flatnonzero([key not in self._verdicts for key in keys])
+        if len(unknown):
+            found = self._evaluated(unknown, offsets, clearances)
+            self._verdicts |= zip([keys[i] for i in unknown.tolist()], found, strict=True)
+        return [self._verdicts[key] for key in keys]
+
+    def half_way(self, band: OffsetBand, edges: Flags) -> Array:
+        """Clearances half-way on edges of a band.
+
+        Args:
+            band: the band.
+            edges: (m, w, w) the edges that matter.
+
+        Returns:
+            (m, w, w) [m], infinite on the other edges.
+        """
+        layers, offsets, place = band.half_way(edges)
+        clearances = np.full(edges.shape, np.inf)
+        clearances[edges] = self._prover.half_way(layers, offsets)[place]
+        return clearances
+
+    def motion_objective(self, offsets: Array, clearances: Array) -> float:
+        """F of the whole motion along a path; infinite if an edge is not proven free.
+
+        Args:
+            offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
+            clearances: (m + 1,) at the nodes [m].
+        """
+        verdicts = self.of_path(offsets, clearances)
+        least = np.array([v.least_clearance if v.free else 0.0 for v in verdicts])
+        return motion_objective(self._problem, path_length(self._problem, offsets), least)
+
+    def counts(self, node_queries: int, queries: int) -> Counts:
+        """Edges decided so far.
+
+        Args:
+            node_queries: queries spent on nodes.
+            queries: all queries spent.
+        """
+        free = sum(verdict.free for verdict in self._verdicts.values())
+        return Counts(
+            edges_free=free,
+            edges_refused=len(self._verdicts) - free,
+            node_queries=node_queries,
+            edge_queries=queries - node_queries,
+        )
+
+    def _evaluated(self, layers: IntArray, offsets: Array, clearances: Array) -> list[Verdict]:
+        """The verdicts on the edges that leave the given layers of a path."""
+        tails, heads = offsets[layers], offsets[layers + 1]
+        ends = np.stack([clearances[layers], clearances[layers + 1]], axis=1)
+        if self._problem.delta > 0.0:
+            return self._prover.sampled_edges(layers, tails, heads, ends)
+        return [
+            self._prover.certify(layer, tails[k], heads[k], (float(ends[k, 0]), float(ends[k, 1])))
+            for k, layer in enumerate(layers.tolist())
+        ]

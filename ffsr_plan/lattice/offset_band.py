@@ -1,0 +1,75 @@
+"""`OffsetBand`: offsets on either side of a path, layer by layer."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.problem.problem import Problem
+
+
+class OffsetBand:
+    """The w offsets of each layer within a reach of a path.
+
+    Attributes:
+        choices: (m + 1, w, axes) offsets in the unit of the path.
+        present: (m + 1, w) which of them are allowed; layers 0 and m have the first one only.
+        offsets: (m + 1, w, 3) displacement of the base [m].
+        lengths: (m, w, w) length of each edge [length units].
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        path: IntArray,
+        rim: IntArray,
+        unit: Array,
+        step: int,
+        reach: IntArray,
+    ) -> None:
+        """The offsets around a path.
+
+        Args:
+            problem: gives lengths.
+            path: (m + 1, axes) offsets along the path, in units.
+            rim: (axes,) largest offset to either side, in units.
+            unit: (axes, 3) displacement of the base by one unit along each axis [m].
+            step: distance between two offsets, in units.
+            reach: (axes,) offsets to either side of the path.
+        """
+        self._unit = unit
+        around = np.array(list(product(*(range(-r, r + 1) for r in reach))), dtype=np.int64)
+        sums = np.ravel_multi_index((around + reach).T, tuple((4 * reach + 1).tolist()))
+        self._sums: IntArray = sums[:, None] + sums
+        self._sum_count = int(np.prod(4 * reach + 1))
+        self.choices: IntArray = path[:, None] + step * around
+        self.present: Flags = np.all(np.abs(self.choices) <= rim, axis=2)
+        for end in (0, -1):
+            self.choices[end], self.present[end] = path[end], False
+            self.present[end, 0] = True
+        self.offsets: Array = self.choices @ unit
+        x, y, z = np.moveaxis(self.offsets[1:, None] - self.offsets[:-1, :, None], 3, 0)
+        across = np.sqrt(x**2 + y**2 + z**2) * problem.position_weight
+        self.lengths: Array = np.sqrt(problem.delta_d**2 + across**2) / problem.length_unit
+
+    def half_way(self, edges: Flags) -> tuple[IntArray, Array, IntArray]:
+        """The places half-way on edges.
+
+        Edges of a layer whose offsets have the same sum pass at the same place, so that there are
+        few places.
+
+        Args:
+            edges: (m, w, w) e edges.
+
+        Returns:
+            (p,) layer and (p, 3) displacement of the base [m] of each place; (e,) the place of each
+            edge, in the order of `np.nonzero`.
+        """
+        layer, tail, head = np.nonzero(edges)
+        name = layer * self._sum_count + self._sums[tail, head]
+        _, first, place = np.unique(name, return_index=True, return_inverse=True)
+        layer, tail, head = layer[first], tail[first], head[first]
+        sums = self.choices[layer, tail] + self.choices[layer + 1, head]
+        return layer, (sums / 2.0) @ self._unit, place
