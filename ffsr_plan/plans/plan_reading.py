@@ -205,7 +205,7 @@ def _motion(what: str, table: PlanTable, problem: Problem) -> Motion:
 
 
 def _check_joint_values(what: str, values: Array, robot: SpaceRobot) -> None:
-    """Raise `InvalidInput` for values outside the limits, and steps that take for ever to follow."""
+    """Raise `InvalidInput` for values outside the limits, and steps too long to follow."""
     for k, name in enumerate(robot.joint_names):
         lower, upper = robot.lower[k] - _AGREEMENT, robot.upper[k] + _AGREEMENT
         outside = values[:, k][(values[:, k] < lower) | (values[:, k] > upper)]
