@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.refinement.offset_band import OffsetBand
 from ffsr_plan.problem.objective import motion_objective, path_length
@@ -35,7 +35,15 @@ class EdgeClearances:
         keys = [(i, names[i], names[i + 1]) for i in range(len(names) - 1)]
         unknown = np.flatnonzero([key not in self._verdicts for key in keys])
         if len(unknown):
-            found = self._evaluated(unknown, offsets, clearances)
+            tails, heads = offsets[unknown], offsets[unknown + 1]
+            ends = np.stack([clearances[unknown], clearances[unknown + 1]], axis=1)
+            if self._problem.delta > 0.0:
+                found = self._prover.sampled_edges(unknown, tails, heads, ends)
+            else:
+                found = [
+                    self._prover.certify(layer, tails[k], heads[k], tuple(ends[k].tolist()))
+                    for k, layer in enumerate(unknown.tolist())
+                ]
             self._verdicts |= zip([keys[i] for i in unknown.tolist()], found, strict=True)
         return [self._verdicts[key] for key in keys]
 
@@ -80,14 +88,3 @@ class EdgeClearances:
             node_queries=node_queries,
             edge_queries=queries - node_queries,
         )
-
-    def _evaluated(self, layers: IntArray, offsets: Array, clearances: Array) -> list[Verdict]:
-        """The verdicts on the edges that leave the given layers of a path."""
-        tails, heads = offsets[layers], offsets[layers + 1]
-        ends = np.stack([clearances[layers], clearances[layers + 1]], axis=1)
-        if self._problem.delta > 0.0:
-            return self._prover.sampled_edges(layers, tails, heads, ends)
-        return [
-            self._prover.certify(layer, tails[k], heads[k], (float(ends[k, 0]), float(ends[k, 1])))
-            for k, layer in enumerate(layers.tolist())
-        ]

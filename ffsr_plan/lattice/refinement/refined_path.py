@@ -81,8 +81,10 @@ def refined_path(
     problem = lattice.problem
     if not problem.lattice.axes:
         return None  # one node a layer: there is no offset to change
-    descent = _Descent(lattice, prover, offsets, clearances)
-    before = descent.value
+    edges = EdgeClearances(problem, prover)
+    descent = _Descent(lattice, prover, edges, offsets, clearances)
+    before = edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
+    descent.value = before
     axes = len(problem.lattice.axes) - 1
     reach, candidates = _REACH_OF_SHORTEST[axes], _EXHAUSTIVE
     if problem.delta > 0.0:
@@ -111,7 +113,12 @@ class _Descent:
     """A path in whole sixteenths of the lattice's spacing; F of its whole motion goes down."""
 
     def __init__(
-        self, lattice: LayeredLattice, prover: Prover, offsets: Array, clearances: Array
+        self,
+        lattice: LayeredLattice,
+        prover: Prover,
+        edges: EdgeClearances,
+        offsets: Array,
+        clearances: Array,
     ) -> None:
         self._problem, self._prover = lattice.problem, prover
         settings = lattice.problem.lattice
@@ -122,10 +129,10 @@ class _Descent:
         sizes = np.sum(self.unit**2, axis=1)
         self.coordinates: IntArray = np.rint(offsets @ self.unit.T / sizes).astype(np.int64)
         self._known: dict[int, float] = {}
-        self._edges = EdgeClearances(lattice.problem, prover)
+        self._edges = edges
         self._queries_before, self._node_queries = prover.queries, 0
         self.clearances = np.array(clearances)
-        self.value = self._edges.motion_objective(self.coordinates @ self.unit, self.clearances)
+        self.value = np.inf
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""
