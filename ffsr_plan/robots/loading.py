@@ -17,7 +17,7 @@ from ffsr_plan.core.errors import InvalidInput, UncheckedLinks, unknown_name
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.collision_shapes import CONTAINERS, Containers, collision_geometry
 from ffsr_plan.robots.loaded_model_checks import compare
-from ffsr_plan.robots.locked_joints import fix_locked_joints
+from ffsr_plan.robots.urdf.locked_joints import fix_locked_joints
 from ffsr_plan.robots.pinocchio_models import build_model, visual_model
 from ffsr_plan.robots.plausibility import check_bodies
 from ffsr_plan.robots.robot import SpaceRobot

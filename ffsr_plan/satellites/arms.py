@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.text_files import read_text
-from ffsr_plan.robots.locked_joints import fix_locked_joints
+from ffsr_plan.robots.urdf.locked_joints import fix_locked_joints
 from ffsr_plan.robots.srdf import disabled_pairs
 from ffsr_plan.robots.urdf.canonical import read_urdf
 from ffsr_plan.robots.urdf.joints import check_movable

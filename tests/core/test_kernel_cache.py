@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from ffsr_plan.core.kernel_cache import digest
+from ffsr_plan.core.compilation import digest
 
 TEXTS = {
     "low": "K = 1\n",
