@@ -13,12 +13,12 @@ import numpy as np
 from ffsr_plan.core.checks import number, one_of, truth, whole_number
 from ffsr_plan.core.errors import AttitudeOutOfReach, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate
-from ffsr_plan.lattice.refinement.refined_path import refined_path
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.plans.planner_registry import Planner, planner_of
 from ffsr_plan.problem.memory_estimate import check_colonies
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
 from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
 

@@ -16,11 +16,11 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import WheelMomentum, wheel_momentum
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
-from ffsr_plan.lattice.refinement.edge_clearances import EdgeClearances
 from ffsr_plan.plans.planner_registry import Planner
 from ffsr_plan.problem.objective import motion_objective
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.edge_clearances import EdgeClearances
 from ffsr_plan.search.records import History, Trails
 
 

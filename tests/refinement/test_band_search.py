@@ -4,9 +4,6 @@ from itertools import product
 
 import numpy as np
 import pytest
-from ffsr_plan.lattice.band_search import BandSearch
-from ffsr_plan.lattice.edge_clearances import EdgeClearances
-from ffsr_plan.lattice.offset_band import OffsetBand
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,6 +11,9 @@ import ffsr_plan as fp
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.shortest_path_kernel import promising
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.band_search import BandSearch
+from ffsr_plan.refinement.edge_clearances import EdgeClearances
+from ffsr_plan.refinement.offset_band import OffsetBand
 from tests.helpers.urdf_builders import random_scene
 
 seeds = st.integers(0, 100_000)

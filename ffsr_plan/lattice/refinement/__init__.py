@@ -1,1 +1,0 @@
-"""Refinement of a proven lattice path to offsets between the nodes."""
