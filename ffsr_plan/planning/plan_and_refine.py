@@ -49,13 +49,11 @@ def plan(
             with posture axes and `MaxMinAntSystem()` on any other.
         seed: a whole number >= 0, or a generator. The same seed gives the same plan, bit for bit,
             whatever the number of workers.
-        refine: whether to move the path off the lattice in the end, to where F of the whole motion
-            is lower; see `refine`. By default on every lattice without posture axes; with them
-            paths are not refined.
+        refine: whether to move the path off the lattice in the end, see `refine`; by default on
+            every lattice without posture axes, as with them paths are not refined.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
-        time_limit: [s] for the search, from its beginning. The set-up of the lattice before it, the
-            optimum and the refinement after it are not cut short.
+        time_limit: [s] for the search alone, without set-up, optimum and refinement.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.
         on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
 

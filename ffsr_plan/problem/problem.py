@@ -51,7 +51,10 @@ def _touching(robot: SpaceRobot, scene: Scene, what: str, value: object) -> str:
 
     Obstacles count at the start only: where the base is at the goal depends on the mode.
     """
-    q = np.array(value, dtype=np.float64)
+    try:
+        q = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        return ""
     size = float(np.linalg.norm(q[3:7])) if q.shape == (robot.model.nq,) else 0.0
     if not (np.all(np.isfinite(q)) and size > 0.5):
         return ""

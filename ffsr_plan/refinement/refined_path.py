@@ -105,7 +105,8 @@ def refined_path(
     if not problem.lattice.axes:
         return None  # one node a layer: there is no offset to change
     descent = _Descent(lattice, prover, offsets, clearances)
-    before = descent.value
+    before = descent.edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
+    descent.value = before
     if problem.delta > 0.0 and nodes is not None:
         descent.learn(nodes.known, nodes.bounds, lattice.indices)
     for level in _levels(problem.delta, len(problem.lattice.axes)):
@@ -149,7 +150,7 @@ class _Descent:
         self.edges = EdgeClearances(lattice.problem, prover)
         self._queries_before, self._node_queries = prover.queries, 0
         self.clearances = np.array(clearances)
-        self.value = self.edges.motion_objective(self.coordinates @ self.unit, self.clearances)
+        self.value = np.inf
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""
