@@ -13,11 +13,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ffsr_plan.collision.distances import Clearance, clearance
+from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
 from ffsr_plan.core import errors
 from ffsr_plan.core.errors import (
     AttitudeOutOfReach,
     FfsrPlanError,
     GoalInCollision,
+    HeldBase,
     IntegrationError,
     InternalError,
     InvalidInput,
@@ -26,9 +28,11 @@ from ffsr_plan.core.errors import (
     PlanNotVerified,
     PoseOutOfReach,
     StartInCollision,
+    UncheckedLinks,
     UnprovenPath,
     WorkerDied,
 )
+from ffsr_plan.core.formatting import Contact
 from ffsr_plan.dynamics import momentum
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.inverse_dynamics import States
@@ -46,9 +50,12 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.single_edge_proof import EdgeProof, certify_edge
 from ffsr_plan.robots.collision_shapes import Replacement
+from ffsr_plan.robots.components import Components
 from ffsr_plan.robots.loading import load_robot, robot_names
-from ffsr_plan.robots.robot import Components, SpaceRobot
+from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.summary import RobotSummary, robot_summaries
+from ffsr_plan.robots.urdf.inertias import Balanced
+from ffsr_plan.robots.urdf.joints import RateLimits
 from ffsr_plan.satellites.arms import arm_names
 from ffsr_plan.satellites.bus import Bus, Panel
 from ffsr_plan.satellites.composition import Mount, compose
@@ -72,15 +79,18 @@ __all__ = [
     "AntSystem",
     "AttitudeOutOfReach",
     "Axis",
+    "Balanced",
     "Bus",
     "Certificate",
     "Clearance",
     "Components",
+    "Contact",
     "Counts",
     "Cycle",
     "EdgeProof",
     "FfsrPlanError",
     "GoalInCollision",
+    "HeldBase",
     "History",
     "IntegrationError",
     "InternalError",
@@ -104,6 +114,7 @@ __all__ = [
     "PostureAxis",
     "PostureTarget",
     "Problem",
+    "RateLimits",
     "Replacement",
     "Report",
     "Roadmap",
@@ -111,12 +122,15 @@ __all__ = [
     "Scenario",
     "Scene",
     "SearchResult",
+    "SelfCollision",
+    "SelfCollisions",
     "Solution",
     "SpaceRobot",
     "StartInCollision",
     "States",
     "TimedPlan",
     "Trails",
+    "UncheckedLinks",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",
@@ -135,6 +149,7 @@ __all__ = [
     "refine",
     "robot_names",
     "robot_summaries",
+    "self_collisions",
 ]
 
 _LAZY = {  # modules that take time to import and that not every script needs

@@ -14,10 +14,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.urdf.number_texts import attribute_text
 from ffsr_plan.satellites.arms import Arm
 from ffsr_plan.satellites.bus import Bus, Panel
 from ffsr_plan.satellites.composition import Mount, compose, put_together
-from ffsr_plan.satellites.urdf_xml import GOLD, NAVY, attribute_text, box_link
+from ffsr_plan.satellites.urdf_xml import GOLD, NAVY, box_link
 
 LIMB = 0.6
 """Length of a limb of the spatial arms [m]."""

@@ -14,6 +14,7 @@ from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.roadmap import Roadmap
+from ffsr_plan.robots.loading import robot_from_urdf
 
 
 @pytest.fixture(scope="module")
@@ -163,3 +164,47 @@ def test_plan_through_a_gate_with_posture_axes(benchmark, name, reference):
 def search_anew(problem, planner):
     """Build the roadmap and search it."""
     return planner.search(Roadmap(problem), np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("scenario", ["fig2a", "inspection"])
+def test_verification(benchmark, scenario, reference):
+    """`verify` at its defaults; for `inspection` among 4748 spheres, 15 shapes and 66 pairs."""
+    plan = fp.plan(fp.load_scenario(scenario), fp.LatticeOptimum())
+    assert plan.verify().ok  # compiles
+    report = benchmark.pedantic(plan.verify, rounds=5)
+    benchmark.extra_info["samples"] = report.samples
+    record(benchmark, reference)
+
+
+def test_verification_of_folded_hulls(benchmark, reference):
+    """A stack of eight discs, hulls of some 200 corners, on five edges."""
+    plan = stack_of_discs_plan()
+    assert plan.verify().ok
+    report = benchmark.pedantic(plan.verify, rounds=5)
+    benchmark.extra_info["samples"] = report.samples
+    record(benchmark, reference)
+
+
+def stack_of_discs_plan():
+    """Discs above one another turn about their common axis while the base flies past a sphere."""
+    points = np.random.default_rng(1).normal(size=(200, 3))
+    points /= np.linalg.norm(points, axis=1)[:, None]
+    disc = '<collision><geometry><mesh filename="disc.stl"/></geometry></collision>'
+    body = (
+        '<inertial><mass value="{}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+        f"</inertial>{disc}"
+    )
+    parts = [f'<link name="disc0">{body.format(100)}</link>']
+    for k in range(1, 8):
+        parts.append(f'<link name="disc{k}">{body.format(3)}</link>')
+        parts.append(
+            f'<joint name="turn{k}" type="revolute"><parent link="disc{k - 1}"/>'
+            f'<child link="disc{k}"/><origin xyz="0 0 0.08"/><axis xyz="0 0 1"/>'
+            '<limit lower="-2" upper="2" velocity="1" effort="1"/></joint>'
+        )
+    text = f'<robot name="stack">{"".join(parts)}</robot>'
+    robot = robot_from_urdf(text, "stack", meshes={"disc.stl": points * [0.3, 0.3, 0.02]})
+    turned = dict.fromkeys(robot.joint_names, 0.2)
+    goal = robot.configuration((3, 0, 0), joints=turned)
+    scene = fp.Scene([[3.0, 3.0, 0.0]], [0.5])
+    return fp.plan(fp.Problem(robot, scene, robot.neutral(), goal, lattice=fp.Lattice(5)))

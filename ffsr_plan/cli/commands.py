@@ -1,21 +1,26 @@
 """Commands `ffsr-plan demo | plan | verify | view | export | gif | timed | robots | schema`.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
-plan that does not verify, 2 bad input, 130 interrupted without a plan.
+plan that does not verify, 2 bad input, 70 an error of the program itself, 130 interrupted: before
+there was a plan, or once more.
 """
 
 from __future__ import annotations
 
+import io
+import signal
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from ffsr_plan.cli.planning import LiveOptions, Options, plan_and_report
 from ffsr_plan.cli.printed_tables import flight_table, report_table, robot_table
 from ffsr_plan.cli.result_files import check_replacement, check_target, unused_path
-from ffsr_plan.cli.terminal import errors_on_stderr, out_console, with_spinner
+from ffsr_plan.cli.terminal import INTERRUPTED, errors_on_stderr, out_console, with_progress
 from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
+from ffsr_plan.search.interruption import CtrlC, raise_ctrl_c
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -115,14 +120,19 @@ def plan(
 @app.command()
 def verify(
     plan_file: PlanFile,
-    samples: Annotated[int, typer.Option(help="Distance checks per edge.")] = 2000,
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            help="Least number of steps on each edge, 50 by default; halved where needed."
+        ),
+    ] = None,
 ) -> None:
-    """Verify a saved plan by dense samples, independently of the planner."""
+    """Verify a saved plan all along its motion, independently of the planner."""
     with errors_on_stderr():
         from ffsr_plan.planning.certified_plan import Plan
 
         loaded = Plan.load(plan_file)
-        report = with_spinner("verifying", lambda: loaded.verify(samples))
+        report = with_progress("verifying", lambda told: loaded.verify(samples, told))
         out_console.print(report_table(report))
         if not report.ok:
             raise PlanNotVerified(report.problems)
@@ -223,23 +233,40 @@ def view(
 @app.command()
 def robots() -> None:
     """List the bundled robots, and the arms that `ffsr_plan.compose` can mount on a bus."""
-    from ffsr_plan.robots.summary import robot_summaries
-    from ffsr_plan.satellites.arms import arm_names
+    with errors_on_stderr():
+        from ffsr_plan.robots.summary import robot_summaries
+        from ffsr_plan.satellites.arms import arm_names
 
-    out_console.print(robot_table(robot_summaries()))
-    out_console.print(f"Arms for your own bus: {', '.join(arm_names())}")
+        out_console.print(robot_table(robot_summaries()))
+        out_console.print(f"Arms for your own bus: {', '.join(arm_names())}")
 
 
 @app.command()
 def schema() -> None:
     """Print the JSON Schema of scenario files, for editors that complete and check TOML."""
-    import json
+    with errors_on_stderr():
+        import json
 
-    from ffsr_plan.scenario_files.scenario_schema import schema as scenario_schema
+        from ffsr_plan.scenario_files.scenario_schema import schema as scenario_schema
 
-    typer.echo(json.dumps(scenario_schema(), indent=2))
+        typer.echo(json.dumps(scenario_schema(), indent=2))
+
+
+def _report_unraisable(unraisable: Any) -> None:  # noqa: ANN401 - of a type without a name
+    """Report an exception in a callback of a library, unless it is Ctrl-C, which is not lost."""
+    if unraisable.exc_type is not CtrlC:
+        sys.__unraisablehook__(unraisable)
 
 
 def main() -> None:
-    """Entry point of the `ffsr-plan` command."""
-    app()
+    """Run a command of `ffsr-plan`, and exit."""
+    if isinstance(sys.stdout, io.TextIOWrapper):  # names of files may hold what it cannot encode
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        signal.signal(signal.SIGINT, raise_ctrl_c)
+        sys.unraisablehook = _report_unraisable
+        app()
+    except KeyboardInterrupt:  # while an error was being printed
+        raise SystemExit(INTERRUPTED) from None
+    finally:  # the exit status is decided
+        signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ffsr_plan.cli.printed_tables import plan_table
 from ffsr_plan.cli.result_files import write_results
-from ffsr_plan.cli.terminal import err_console, out_console, with_spinner
+from ffsr_plan.cli.terminal import err_console, out_console, with_progress
 from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
 
 if TYPE_CHECKING:
@@ -81,7 +81,9 @@ def plan_and_report(source: str, options: Options, target: Path | None, check: b
     plan = run(scenario, options)
     if target is not None:
         write_results(plan, scenario.title, target)
-    report = with_spinner("verifying", plan.verify) if check else None
+    report = None
+    if check:
+        report = with_progress("verifying", lambda told: plan.verify(on_progress=told))
     out_console.print(plan_table(scenario.title, plan, report, duration))
     if target is not None:
         out_console.print(f"Written to {target}: open {target / 'plan.html'} in a browser.")

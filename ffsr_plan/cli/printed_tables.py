@@ -49,7 +49,7 @@ def robot_table(robots: Iterable[RobotSummary]) -> Table:
     table = Table("robot", "kg", "reach", "postures", "joints", show_lines=True)
     for robot in robots:
         table.add_row(
-            f"{robot.name}\n{counted(len(robot.joint_names), 'joint')}",
+            "\n".join(_robot_words(robot)),
             f"{robot.mass:.4g}",
             f"{robot.reach_bound:.2f} m",
             "\n".join(robot.postures),
@@ -58,12 +58,23 @@ def robot_table(robots: Iterable[RobotSummary]) -> Table:
     return table
 
 
+def _robot_words(robot: RobotSummary) -> Iterator[str]:
+    yield robot.name
+    yield counted(len(robot.joint_names), "joint")
+    if robot.unchecked_links:
+        yield f"not checked: {', '.join(robot.unchecked_links)}"
+
+
 def report_rows(report: Report) -> Iterator[tuple[str, str]]:
     """Names and values of a verification report."""
     yield "verified", "yes" if report.ok else "NO, see below"
-    yield "  samples", f"{report.samples}, at most {1e3 * report.largest_step:.2f} mm apart"
+    hidden = "nothing can be hidden between them"
+    if report.largest_gap > 0.0:
+        hidden = f"a contact may be hidden between two, {report.largest_gap:.1e} m apart"
+    yield "  samples", f"{report.samples}, {hidden}"
     if np.isfinite(report.least_clearance):  # there are obstacles
-        yield "  least clearance", f"{report.least_clearance:.6f} m"
+        least, bound = report.least_clearance, report.clearance_bound
+        yield "  least clearance", f"{least:.6f} m measured, at least {bound:.6f} m between samples"
     if np.isfinite(report.least_self_separation):
         yield "  least link-to-link", f"{report.least_self_separation:.6f} m"
     if report.momentum_residual is not None:
@@ -72,6 +83,9 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
         yield "  centre of mass", f"moves by at most {report.center_drift:.1e} m"
     if report.wheel_momentum_error is not None:
         yield "  wheel momentum error", f"{report.wheel_momentum_error:.1e} relative"
+    if report.unchecked:
+        yield "  links not checked", ", ".join(report.unchecked)
+    yield "  not checked", "\n".join(report.not_checked)
 
 
 def flight_rows(flight: TimedPlan) -> Iterator[tuple[str, str]]:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.text_files import write_files
 
 if TYPE_CHECKING:
     from ffsr_plan.planning.certified_plan import Plan
@@ -16,7 +19,9 @@ RESULTS = ("plan.json", "plan.html", "path.png", "clearance.png", "convergence.p
 
 
 def write_results(plan: Plan, title: str, target: Path) -> None:
-    """Write plan, page and figures into a directory.
+    """Write plan, page and figures into a directory: all files or none, and each of them whole.
+
+    If that fails, the plan alone is written, under a name that is not in use.
 
     Args:
         plan: the plan.
@@ -24,17 +29,27 @@ def write_results(plan: Plan, title: str, target: Path) -> None:
         target: the directory, made if it is not there.
 
     Raises:
-        InvalidInput: the directory cannot be written.
+        InvalidInput: the directory or a file in it cannot be written.
     """
-    from ffsr_plan.display.figures import write_figures
+    from ffsr_plan.display.figures import figure_files
+    from ffsr_plan.display.plan_page import page
+    from ffsr_plan.plans.plan_file import to_text
 
     try:
         target.mkdir(parents=True, exist_ok=True)
-        plan.save(target / "plan.json")  # first: if anything later fails, the plan is kept
-        plan.write_html(target / "plan.html", title)
-        write_figures(plan, target)
     except OSError as error:
         raise InvalidInput("--out", str(target), f"a writable directory ({error})") from None
+    try:
+        contents: dict[str, str | bytes] = {
+            "plan.json": to_text(plan),
+            "plan.html": page(plan, title),
+            **figure_files(plan),
+        }
+        write_files("--out", {target / name: content for name, content in contents.items()})
+    except Exception:
+        with suppress(InvalidInput):
+            plan.save(unused_path(target / "plan.json"))
+        raise
 
 
 def check_target(target: Path, force: bool) -> Path:
@@ -50,6 +65,7 @@ def check_target(target: Path, force: bool) -> Path:
     Raises:
         InvalidInput: not a writable directory, or results that may not be replaced.
     """
+    checked_path("--out", target)
     existing = next(p for p in (target, *target.absolute().parents) if p.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK):
         raise InvalidInput("--out", str(target), "a directory that can be written")
@@ -71,7 +87,7 @@ def check_replacement(what: str, path: Path, force: bool) -> None:
         path: of the file.
         force: whether it may be replaced.
     """
-    if path.exists() and not force:
+    if checked_path(what, path).exists() and not force:
         raise InvalidInput(what, str(path), "a file that does not exist yet; --force replaces it")
 
 

@@ -2,32 +2,44 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TypeVar
 
+import click
 import typer
 from rich.console import Console
 
-from ffsr_plan.core.errors import FfsrPlanError, PlanningError
+from ffsr_plan.core.errors import FfsrPlanError, InternalError, PlanningError
+from ffsr_plan.search.interruption import CtrlC
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C."""
 T = TypeVar("T")
-out_console = Console(highlight=False)
-err_console = Console(stderr=True, highlight=False)
+out_console = Console(highlight=False, markup=False, emoji=False)
+err_console = Console(stderr=True, highlight=False, markup=False, emoji=False)
+INTERNAL_ERROR = 70
+"""Exit status for what is the program's fault, EX_SOFTWARE of sysexits.h."""
 
 
-def with_spinner(label: str, work: Callable[[], T]) -> T:
-    """Run `work` with a spinner and a label on standard error.
+def with_progress(label: str, work: Callable[[Callable[[float], object]], T]) -> T:
+    """Run `work` with a progress bar on standard error, if that is a terminal.
 
     Args:
         label: what is being done.
-        work: a function without arguments.
+        work: a function of a callback, which it calls with the share that is done, from 0 to 1.
 
     Returns:
         What `work` returns.
     """
-    with err_console.status(label):
-        return work()
+    from rich.progress import Progress
+
+    hidden = not err_console.is_terminal
+    with Progress(console=err_console, transient=True, disable=hidden) as progress:
+        task = progress.add_task(label, total=1.0)
+        return work(lambda share: progress.update(task, completed=share))
 
 
 @contextmanager
@@ -35,13 +47,33 @@ def errors_on_stderr() -> Iterator[None]:
     """Print errors of ffsr-plan on standard error and exit.
 
     Raises:
-        typer.Exit: status 1 without a verified plan, 2 for bad input, 130 after Ctrl-C.
+        typer.Exit: status 1 without a verified plan, 2 for bad input, 70 for an error of the
+            program itself, 130 after Ctrl-C.
     """
     try:
         yield
+        if CtrlC.raised:  # a library has swallowed it
+            raise CtrlC
+    except InternalError as error:
+        err_console.print(f"ffsr-plan: {error}", style="red")
+        raise typer.Exit(INTERNAL_ERROR) from None
     except FfsrPlanError as error:
-        err_console.print(f"ffsr-plan: {error}", style="red", markup=False)
+        err_console.print(f"ffsr-plan: {error}", style="red")
         raise typer.Exit(1 if isinstance(error, PlanningError) else 2) from None
-    except KeyboardInterrupt:
-        err_console.print("ffsr-plan: interrupted", style="red")
-        raise typer.Exit(130) from None
+    except (KeyboardInterrupt, Exception) as error:
+        if isinstance(error, KeyboardInterrupt) or CtrlC.raised:
+            err_console.print("ffsr-plan: interrupted", style="red")
+            raise typer.Exit(INTERRUPTED) from None
+        if isinstance(error, (typer.Exit, click.ClickException, BrokenPipeError)):
+            raise  # for Typer
+        err_console.print(f"ffsr-plan: {_unexpected(error)}", style="red")
+        raise typer.Exit(INTERNAL_ERROR) from None
+
+
+def _unexpected(error: Exception) -> InternalError:
+    """What nobody has foreseen, in one sentence that says where it happened."""
+    frames = list(traceback.extract_tb(error.__traceback__))
+    own = [frame for frame in frames if "ffsr_plan" in frame.filename] or frames
+    where = f"{Path(own[-1].filename).name}, line {own[-1].lineno}"
+    text = " ".join(str(error).split())
+    return InternalError(f"{type(error).__name__} in {where}{text and ': '}{text[:300]}")

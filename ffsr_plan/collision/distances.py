@@ -21,6 +21,8 @@ from ffsr_plan.robots.collision_shapes import sharpen
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
+_TOUCHING, _MOST_TOUCHING = 1e-9, 20_000  # [m] bound of pairs that may touch; pairs to be listed
+
 
 class Nearest(NamedTuple):
     """The nearest pair of a configuration.
@@ -90,6 +92,31 @@ class ObstacleQuery:
             q: (nq,) configuration.
         """
         return self.nearest_at(shape_placements(self._robot, q[None]), 0, np.zeros(3))
+
+    def touching(self, q: Array) -> list[Nearest]:
+        """All pairs of a shape and a sphere that touch, at most 20 000 of them.
+
+        Args:
+            q: (nq,) configuration.
+        """
+        if self.empty:
+            return []
+        placed = shape_placements(self._robot, q[None])
+        bounds, shapes, rows = pairs_below(
+            self._tree, self._shapes.kinds, placed.frames[0], np.zeros(3), _TOUCHING
+        )
+        chosen = np.argsort(bounds, kind="stable")[:_MOST_TOUCHING]
+        shapes, rows = shapes[chosen], rows[chosen]
+        offsets = self._tree.spheres[rows, :3] - placed.positions[0][shapes]
+        local = np.einsum("kij,ki->kj", placed.rotations[0][shapes], offsets)
+        pairs = zip(
+            self._measured(shapes, rows, local).tolist(), shapes.tolist(), rows, strict=True
+        )
+        return [
+            Nearest(distance, self._links[shape], int(self._tree.order[row]))
+            for distance, shape, row in pairs
+            if distance <= 0.0
+        ]
 
     def distances_at(self, placed: Placements, places: IntArray, shifts: Array) -> Array:
         """Least distances of many placements, each displaced.
@@ -251,6 +278,15 @@ class SelfQuery:
         pair = pin.computeDistances(self._model, self._data, self._geometry, data, q)
         return float(data.distanceResults[pair].min_distance)
 
+    def touching(self, q: Array) -> list[Nearest]:
+        """All pairs of shapes of two links that touch.
+
+        Args:
+            q: (nq,) configuration.
+        """
+        distances = [] if self.empty else self.distances(q).tolist()
+        return [self._pair(k, distance) for k, distance in enumerate(distances) if distance <= 0.0]
+
     def nearest(self, q: Array) -> Nearest:
         """The nearest pair of links.
 
@@ -261,10 +297,13 @@ class SelfQuery:
         if self.empty:
             return Nearest(np.inf, "", None)
         pair = int(np.argmin(distances))
+        return self._pair(pair, float(distances[pair]))
+
+    def _pair(self, pair: int, distance: float) -> Nearest:
         first, second = (
             self._robot.link_of(self._geometry.geometryObjects[int(k)]) for k in self.pairs[pair]
         )
-        return Nearest(float(distances[pair]), first, second)
+        return Nearest(distance, first, second)
 
 
 class Clearance(float):

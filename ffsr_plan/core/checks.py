@@ -6,7 +6,9 @@ The first argument of each check, `what`, names the field or argument in the mes
 from __future__ import annotations
 
 import numbers
+import os
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +17,9 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 
 _LARGEST_NUMBER = 1e9  # [m or rad]
+_NORM_ROUNDING = 1e-15  # of the norm of numbers that have been divided by their norm
+_LARGEST_WHOLE_NUMBER = 2**128  # seeds may be as large; counts have limits of their own
+_LONGEST_NAME, _LONGEST_PATH = 255, 4095  # [bytes], as Linux and others limit them
 FARTHEST = 1e5
 """Limit [m] of coordinates in the world: for larger ones, floating-point errors would exceed what
 `interval_halving.ROUNDING` allows."""
@@ -41,8 +46,10 @@ def finite_array(
     allowed = f"finite numbers of at most {at_most:g}, of shape ({wanted})"
     try:
         array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except Exception:  # objects may raise anything where numpy looks at them
         raise InvalidInput(what, value, allowed) from None
+    if not _holds_numbers(value):
+        raise InvalidInput(what, value, allowed)
     if array.size == 0 and 0 in [max(n, 0) for n in shape]:
         array = array.reshape([max(n, 0) for n in shape])
     fits = array.ndim == len(shape) and all(
@@ -53,6 +60,18 @@ def finite_array(
     if not np.all(np.abs(array) <= at_most):  # NaN fails too
         raise InvalidInput(what, value, allowed)
     return frozen(array)
+
+
+def _holds_numbers(value: object) -> bool:
+    """Whether an array or nested sequence that numpy can read has no text and no booleans."""
+    if isinstance(value, (list, tuple)):
+        return set(map(type, value)) <= {float, int} or all(map(_holds_numbers, value))
+    if isinstance(value, (float, int, np.number)):
+        return not isinstance(value, bool)
+    array = np.asarray(value)
+    if array.dtype.kind == "O" and array.ndim:
+        return _holds_numbers(array.tolist())
+    return array.dtype.kind in "iuf"
 
 
 def number(
@@ -89,7 +108,10 @@ def number(
     allowed = " and ".join(["a finite number", *filter(None, bounds)])
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise InvalidInput(what, value, allowed)
-    result = float(value)
+    try:
+        result = float(value)
+    except OverflowError:  # an integer beyond all floating-point numbers
+        raise InvalidInput(what, value, allowed) from None
     if not (np.isfinite(result) and above < result < below and at_least <= result <= at_most):
         raise InvalidInput(what, value, allowed)
     return result
@@ -102,7 +124,7 @@ def whole_number(what: str, value: object, *, at_least: int, at_most: int | None
         what: name in the message.
         value: an integer; booleans and floats are refused.
         at_least: lower bound.
-        at_most: upper bound, if any.
+        at_most: upper bound; without one, 2^128.
 
     Returns:
         The number as an int.
@@ -114,6 +136,8 @@ def whole_number(what: str, value: object, *, at_least: int, at_most: int | None
     allowed += "" if at_most is None else f" and at most {at_most}"
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Integral):
         raise InvalidInput(what, value, allowed)
+    if at_most is None and int(value) > _LARGEST_WHOLE_NUMBER:
+        raise InvalidInput(what, value, f"{allowed} and at most 2^128")
     if int(value) < at_least or (at_most is not None and int(value) > at_most):
         raise InvalidInput(what, value, allowed)
     return int(value)
@@ -124,6 +148,46 @@ def truth(what: str, value: object) -> bool:
     if not isinstance(value, (bool, np.bool_)):
         raise InvalidInput(what, value, "True or False")
     return bool(value)
+
+
+def text(what: str, value: object) -> str:
+    """Check a text, which may be empty."""
+    if not isinstance(value, str):
+        raise InvalidInput(what, value, "a text")
+    return value
+
+
+def path(what: str, value: object, *suffixes: str) -> Path:
+    """Check a path; whether there is a file is not asked.
+
+    Args:
+        what: name in the message.
+        value: a text that is not empty, or a `pathlib.Path`.
+        suffixes: the suffixes of which it must have one; none for any.
+
+    Returns:
+        The path.
+
+    Raises:
+        InvalidInput: of another type, or no file can have such a name.
+    """
+    ending = f" that ends in {' or '.join(suffixes)}" if suffixes else ""
+    if not isinstance(value, (str, Path)) or not str(value):
+        raise InvalidInput(what, value, f"a path{ending}")
+    try:
+        name = os.fsencode(value)
+    except UnicodeEncodeError:
+        raise InvalidInput(what, value, "a path of characters that file names may have") from None
+    if b"\0" in name:
+        raise InvalidInput(what, value, "a path without the character NUL")
+    longest = max(map(len, name.split(os.sep.encode())))
+    if longest > _LONGEST_NAME or len(name) > _LONGEST_PATH:
+        allowed = f"a path of at most {_LONGEST_PATH} bytes, {_LONGEST_NAME} for each name in it"
+        raise InvalidInput(what, value, allowed)
+    found = Path(value)
+    if suffixes and found.suffix not in suffixes:
+        raise InvalidInput(what, str(value), f"a path{ending}")
+    return found
 
 
 def one_of(what: str, value: object, names: Sequence[str]) -> str:
@@ -146,6 +210,7 @@ def unit_quaternion(what: str, value: ArrayLike) -> Array:
     """Check a unit quaternion.
 
     It is normalised, because a norm of 1 + 1e-7 would appear as a momentum residual of that size.
+    A normalised one is returned as it is, bit for bit: a file gives back what was written to it.
 
     Args:
         what: name in the message.
@@ -161,4 +226,10 @@ def unit_quaternion(what: str, value: ArrayLike) -> Array:
     norm = float(np.linalg.norm(quat))
     if abs(norm - 1.0) > 1e-6:
         raise InvalidInput(what, value, f"a unit quaternion (x, y, z, w); this norm is {norm:.9g}")
-    return frozen(quat / norm)
+    return normalised(quat)
+
+
+def normalised(vector: Array) -> Array:
+    """A vector (n,) divided by its norm, unless that is one but for rounding; read-only."""
+    norm = float(np.linalg.norm(vector))
+    return frozen(vector if abs(norm - 1.0) <= _NORM_ROUNDING else vector / norm)

@@ -7,12 +7,13 @@ import difflib
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, is_dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.formatting import Contact, closing_obstacles, contact_list, obstacle_name
 
-_MOST_OBSTACLES_NAMED = 12
 _MOST_CHARACTERS_OF_A_VALUE = 120
+_MOST_CHARACTERS = 600  # of the field, and of what is allowed
 
 
 class FfsrPlanError(Exception):
@@ -50,8 +51,13 @@ class InvalidInput(FfsrPlanError, ValueError):
     allowed: str
 
     def message(self) -> str:
-        """What is wrong, the value and what is allowed."""
-        return f"{self.what}: got {_shorten(self.value)}; allowed: {self.allowed}"
+        """What is wrong, the value and what is allowed, on one line."""
+        what, allowed = _on_one_line(self.what), _on_one_line(self.allowed)
+        return f"{what}: got {_shorten(self.value)}; allowed: {allowed}"
+
+
+class UncheckedLinks(UserWarning):
+    """A robot has links with mass but no shape, which nothing keeps clear of obstacles."""
 
 
 class PlanningError(FfsrPlanError):
@@ -79,38 +85,36 @@ class IntegrationError(FfsrPlanError):
 
 @dataclass(eq=False, repr=False)
 class _InCollision(PlanningError):
-    """A prescribed configuration is in collision.
-
-    Attributes:
-        link: name of the link in collision.
-        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
-            scene.
-        depth: penetration depth [m], zero in contact.
-    """
+    """A prescribed configuration is in collision."""
 
     configuration: ClassVar[str]
 
     link: str
     obstacle: int | str | None
     depth: float
+    contacts: tuple[Contact, ...] = ()
+    goal_contacts: tuple[Contact, ...] = ()
+    advice: tuple[str, ...] = ()
 
     def message(self) -> str:
-        """The link, what it touches and how deep."""
-        hint = "; an SRDF can exempt links that may touch" if isinstance(self.obstacle, str) else ""
-        return (
-            f"{self.configuration} in collision: link '{self.link}' is {self.depth:.4g} m inside "
-            f"{_named(self.obstacle)}{hint}"
-        )
+        """All that touches, how deep, and what may help."""
+        contacts = self.contacts or (Contact(self.link, self.obstacle, self.depth),)
+        text = f"{self.configuration} in collision: {contact_list(contacts)}"
+        if self.goal_contacts:
+            text += f"; the goal is in collision too: {contact_list(self.goal_contacts)}"
+        return text + _helping(self.advice)
 
 
 class StartInCollision(_InCollision):
     """The start configuration touches an obstacle or the robot itself.
 
     Attributes:
-        link: name of the link in collision.
-        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
-            scene.
+        link: name of the link in the deepest collision.
+        obstacle: index of the sphere in the scene, or name of the other link.
         depth: penetration depth [m], zero in contact.
+        contacts: all links and obstacles that touch, the deepest first.
+        goal_contacts: those of the goal, if it is in collision as well.
+        advice: what may help.
     """
 
     configuration = "start"
@@ -120,10 +124,12 @@ class GoalInCollision(_InCollision):
     """The goal configuration, at the attitude that results there, touches something.
 
     Attributes:
-        link: name of the link in collision.
-        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
-            scene.
+        link: name of the link in the deepest collision.
+        obstacle: index of the sphere in the scene, or name of the other link.
         depth: penetration depth [m], zero in contact.
+        contacts: all links and obstacles that touch, the deepest first.
+        goal_contacts: empty.
+        advice: what may help.
     """
 
     configuration = "goal"
@@ -138,27 +144,28 @@ class NoPath(PlanningError):
         obstacles: what closes the layer: indices of spheres in the scene and, for self-collision,
             names of links.
         divisions: number of divisions of the lattice; its layers are 0 .. divisions.
+        contacts: the same with the links that meet the obstacles.
+        advice: what may help on this lattice.
     """
 
     layer: int
     obstacles: tuple[int | str, ...]
     divisions: int
+    contacts: tuple[Contact, ...] = ()
+    advice: tuple[str, ...] = ()
 
     def message(self) -> str:
-        """The layer, what closes it, and which settings may help."""
-        spheres = [str(o) for o in self.obstacles if isinstance(o, int)]
-        listed = ", ".join(spheres[:_MOST_OBSTACLES_NAMED])
-        if len(spheres) > _MOST_OBSTACLES_NAMED:
-            listed += f" and {len(spheres) - _MOST_OBSTACLES_NAMED} more"
+        """The layer, what closes it, and what may help."""
+        spheres = [o for o in self.obstacles if isinstance(o, int)]
         links = ", ".join(f"'{o}'" for o in self.obstacles if isinstance(o, str))
         causes = [
-            f"obstacle{'s' if len(spheres) > 1 else ''} {listed}" if spheres else "",
+            closing_obstacles(self.contacts, spheres),
             f"self-collision of {links}" if links else "",
         ]
         return (
             f"no path on this lattice: layer {self.layer} of {self.divisions} cannot be passed "
-            f"(closed by {' and '.join(filter(None, causes)) or 'the limits of the lattice'}); "
-            "wider or additional lattice axes, a finer spacing or more divisions may help"
+            f"(closed by {' and '.join(filter(None, causes)) or 'the limits of the lattice'})"
+            + _helping(self.advice or ("wider or additional lattice axes",))
         )
 
 
@@ -169,23 +176,43 @@ class AttitudeOutOfReach(PlanningError):
     Attributes:
         wanted: angle from the start attitude to the goal attitude [rad].
         missed: angle from the attitude reached to the goal attitude [rad].
+        best: the `Plan` that misses it so, proven free all the same; None if no path could be
+            proven free.
         turned: the part of `wanted` that was reached, wanted - missed, at least 0 [rad].
     """
 
     wanted: float
     missed: float
+    best: Any = None
     turned: float = field(init=False)
 
     def __post_init__(self) -> None:
         self.turned = max(0.0, self.wanted - self.missed)
 
     def message(self) -> str:
-        """Both angles in degrees, and which settings may help."""
+        """All three angles in degrees, and which settings may help."""
         return (
             f"goal attitude out of reach: the best joint path rotates the base by "
-            f"{math.degrees(self.turned):.1f} of {math.degrees(self.wanted):.1f} degrees; more "
-            "divisions, wider or other posture axes, or another seed may increase this"
+            f"{math.degrees(self.turned):.1f} of {math.degrees(self.wanted):.1f} degrees and "
+            f"misses the goal by {math.degrees(self.missed):.2g} degrees; more divisions, wider or "
+            "more posture axes, or another seed may help"
         )
+
+
+class HeldBase(NamedTuple):
+    """What a robot reaches from the place of its base if wheels hold the start's attitude.
+
+    Attributes:
+        reached: whether it reaches the wanted pose.
+        rotation: angle by which the reaction turns a base that is not held, on the straight way to
+            the joint values at which the pose is reached or missed least [rad].
+        position_missed: by how much the frame then misses the wanted position [m]; where the pose
+            is not reached, by how much the held one does.
+    """
+
+    reached: bool
+    rotation: float
+    position_missed: float
 
 
 @dataclass(eq=False, repr=False)
@@ -199,12 +226,18 @@ class PoseOutOfReach(PlanningError):
             allowed.
         configuration: (nq,) the configuration of the least error, in which one metre counts as
             much as one radian.
+        held_base: what a base that wheels hold would reach; None if they do hold it.
+        without_attitude: whether the position alone is reached; None if no attitude is wanted.
+        advice: what may help.
     """
 
     frame: str
     position_missed: float
     attitude_missed: float | None
     configuration: Array
+    held_base: HeldBase | None = None
+    without_attitude: bool | None = None
+    advice: tuple[str, ...] = ()
 
     def message(self) -> str:
         """The errors of the best configuration, and what may help."""
@@ -214,7 +247,20 @@ class PoseOutOfReach(PlanningError):
             angle = f" and {self.attitude_missed:.4g} rad ({degrees:.3g} degrees)"
         return (
             f"pose out of reach: the best configuration for frame '{self.frame}' misses it by "
-            f"{self.position_missed:.4g} m{angle}; another base position or attitude may reach it"
+            f"{self.position_missed:.4g} m{angle}{self._of_held_base()}"
+            + _helping(self.advice or ("another base position or attitude",))
+        )
+
+    def _of_held_base(self) -> str:
+        held = self.held_base
+        if held is None:
+            return ""
+        if not held.reached:
+            return f"; a held base misses it as well, by {held.position_missed:.4g} m"
+        return (
+            "; it is within reach of a held base, but on the way there the reaction turns the base "
+            f"by {math.degrees(held.rotation):.3g} degrees and takes the frame "
+            f"{held.position_missed:.4g} m away"
         )
 
 
@@ -229,6 +275,8 @@ class UnprovenPath(PlanningError):
             scene.
         distance: least distance measured [m], negative in penetration.
         divisions: number of divisions of the lattice; its layers are 0 .. divisions.
+        source: what the sphere comes from, such as the name of a mesh; empty where that is unknown.
+        advice: what may help on this lattice.
     """
 
     layer: int
@@ -236,14 +284,16 @@ class UnprovenPath(PlanningError):
     obstacle: int | str | None
     distance: float
     divisions: int
+    source: str = ""
+    advice: tuple[str, ...] = ()
 
     def message(self) -> str:
         """Where the proof fails, and which settings may help."""
         return (
             f"no path was found that could be proven free: between layers {self.layer - 1} and "
             f"{self.layer} of {self.divisions}, link '{self.link}' comes within "
-            f"{self.distance:.4g} m of {_named(self.obstacle)}; a finer spacing, more divisions, "
-            "more cycles or other posture axes may help"
+            f"{self.distance:.4g} m of {obstacle_name(self.obstacle, self.source)}"
+            + _helping(self.advice or ("other posture axes",))
         )
 
 
@@ -288,18 +338,39 @@ class PlanNotVerified(PlanningError):
 def unknown_name(what: str, value: object, names: Iterable[str]) -> InvalidInput:
     """An `InvalidInput` that lists the known names and suggests the most similar one."""
     known = list(names)
-    similar = difflib.get_close_matches(str(value), known, n=1, cutoff=0.5)
-    hint = f" (did you mean '{similar[0]}'?)" if similar else ""
+    similar = nearest_name(value, known)
+    hint = "" if similar is None else f" (did you mean '{similar}'?)"
     return InvalidInput(what, value, f"{', '.join(known) if known else 'nothing'}{hint}")
 
 
-def _named(obstacle: int | str | None) -> str:
-    if obstacle is None:
-        return "no obstacle"
-    return f"link '{obstacle}'" if isinstance(obstacle, str) else f"obstacle {obstacle}"
+def nearest_name(value: object, names: Iterable[str]) -> str | None:
+    """The name most similar to a value, whatever the case of the letters; None if none is."""
+    given = str(value)[:_MOST_CHARACTERS_OF_A_VALUE].casefold()
+    known = {name.casefold(): name for name in reversed(list(names))}
+    similar = difflib.get_close_matches(given, known, n=1, cutoff=0.5)
+    return known[similar[0]] if similar else None
+
+
+def _helping(advice: tuple[str, ...]) -> str:
+    return f"; what may help: {'; '.join(advice)}" if advice else ""
 
 
 def _shorten(value: object) -> str:
-    text = repr(value)
+    """The value as Python shows it, cut short; values that cannot be shown by their type."""
     most = _MOST_CHARACTERS_OF_A_VALUE
+    if isinstance(value, int) and value.bit_length() > 4 * most:
+        return f"a whole number of {value.bit_length()} bits"
+    try:
+        text = _on_one_line(repr(value))
+    except Exception:  # a `__repr__` may raise anything, for example for an integer too long
+        return f"an object of the class {type(value).__name__}"
     return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def _on_one_line(text: str) -> str:
+    """A text without line ends and control characters, its middle left out if it is long."""
+    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in " ".join(text.split()))
+    if len(shown) <= _MOST_CHARACTERS:
+        return shown
+    part = _MOST_CHARACTERS // 2
+    return f"{shown[:part]} ... {shown[-part:]}"

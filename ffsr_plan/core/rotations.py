@@ -19,6 +19,8 @@ from ffsr_plan.core.errors import InvalidInput
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 IDENTITY.setflags(write=False)
+_HALF_TURN_BAND = 1e-10  # of the cosine of half the angle
+_LEAST_COMPONENT = 1e-6  # share of a rotation vector; smaller components are zero but for rounding
 
 
 def multiply(p: Array, q: Array) -> Array:
@@ -130,8 +132,32 @@ def angle_between(p: Array, q: Array) -> Array:
     return np.linalg.norm(log(multiply(inverse(p), q)), axis=-1)
 
 
+def rotation_vector(p: Array, q: Array) -> Array:
+    """Rotation vector from p to q, through the smaller angle.
+
+    The two senses of a half turn lead to the same attitude. Within 2e-10 rad of one, where rounding
+    would decide between them, that sense is taken in which the rotation is positive about the first
+    of the axes x, y, z of p that it does not leave out.
+
+    Args:
+        p: (..., 4) unit quaternions.
+        q: (..., 4) unit quaternions.
+
+    Returns:
+        (..., 3) rotation vectors, axes of p [rad]; of length at most pi + 2e-10.
+    """
+    between = multiply(inverse(p), q)
+    vector = log(between)
+    angle = np.linalg.norm(vector, axis=-1, keepdims=True)
+    counts = np.abs(vector) > _LEAST_COMPONENT * angle
+    first = np.argmax(counts, axis=-1)[..., None]
+    negative = np.take_along_axis(vector, first, axis=-1) < 0.0
+    flipped = (np.abs(between[..., 3:]) < _HALF_TURN_BAND) & negative
+    return np.where(flipped, vector * (1.0 - 2.0 * np.pi / np.maximum(angle, 1.0)), vector)
+
+
 def slerp(p: Array, q: Array, s: Array) -> Array:
-    """Spherical interpolation: constant angular velocity, through the smaller angle.
+    """Spherical interpolation: constant angular velocity along `rotation_vector`.
 
     Args:
         p: (..., 4) rotation at s = 0.
@@ -141,7 +167,7 @@ def slerp(p: Array, q: Array, s: Array) -> Array:
     Returns:
         (..., 4) unit quaternions.
     """
-    return multiply(p, exp(np.asarray(s)[..., None] * log(multiply(inverse(p), q))))
+    return multiply(p, exp(np.asarray(s)[..., None] * rotation_vector(p, q)))
 
 
 def level_direction(direction: Array) -> Array:

@@ -6,7 +6,6 @@ function of `core.checks`, and says in JSON Schema what it accepts.
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
@@ -14,9 +13,9 @@ from typing import Any, Protocol
 
 from numpy.typing import ArrayLike
 
-from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.checks import finite_array, number, one_of, truth, whole_number
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.arrays import Array, ReadOnlyDict
+from ffsr_plan.core.checks import finite_array, number, one_of, path, truth, whole_number
+from ffsr_plan.core.errors import InvalidInput, nearest_name
 from ffsr_plan.core.settings import Given, UnknownKey, from_mapping
 
 Vector = Given[Array, ArrayLike]
@@ -181,6 +180,19 @@ class Text(Rule):
 
 
 @dataclass(frozen=True)
+class FilePath(Rule):
+    """A path in a file of settings, as a text."""
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> str:
+        """See `Rule.check`."""
+        return str(path(what, value))
+
+    def json_schema(self) -> dict[str, Any]:
+        """See `Rule.json_schema`."""
+        return {"type": "string", "minLength": 1}
+
+
+@dataclass(frozen=True)
 class Numbers(Rule):
     """An array of finite numbers of one length, kept read-only.
 
@@ -194,8 +206,6 @@ class Numbers(Rule):
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> Array:
         """See `Rule.check`."""
-        if isinstance(value, (list, tuple)) and any(isinstance(v, (str, bool)) for v in value):
-            raise InvalidInput(what, value, f"{self.length} finite numbers")
         return finite_array(what, value, (self.length,), self.at_most)  # type: ignore[arg-type]
 
     def json_schema(self) -> dict[str, Any]:
@@ -211,7 +221,7 @@ class Numbers(Rule):
 
 @dataclass(frozen=True)
 class NamedNumbers(Rule):
-    """Numbers by name, such as joint values.
+    """Numbers by name, such as joint values, kept read-only.
 
     Attributes:
         meaning: what they are, for errors.
@@ -219,11 +229,15 @@ class NamedNumbers(Rule):
 
     meaning: str = "joint names with their values"
 
-    def check(self, what: str, value: object, others: Mapping[str, Any]) -> dict[str, float]:
+    def check(
+        self, what: str, value: object, others: Mapping[str, Any]
+    ) -> ReadOnlyDict[str, float]:
         """See `Rule.check`."""
         if not isinstance(value, Mapping):
             raise InvalidInput(what, value, self.meaning)
-        return {str(name): number(f"{what}.{name}", each) for name, each in value.items()}
+        return ReadOnlyDict(
+            {str(name): number(f"{what}.{name}", each) for name, each in value.items()}
+        )
 
     def json_schema(self) -> dict[str, Any]:
         """See `Rule.json_schema`."""
@@ -289,7 +303,7 @@ class ByKey:
             owners = [kind for kind in self.kinds.values() if key in _field_names(kind)]
             if len(owners) == 1:  # then the key that tells the kinds apart is missing
                 return owners[0]
-            if difflib.get_close_matches(key, self.kinds, n=1):
+            if nearest_name(key, self.kinds) is not None:
                 raise UnknownKey(key, list(self.kinds))
         keys = ", ".join(given or table) or "no key"
         raise InvalidInput("", keys, f"one of {', '.join(self.kinds)}")

@@ -13,7 +13,6 @@ its import takes about 0.1 s, a quarter of that of the whole package.
 
 from __future__ import annotations
 
-import difflib
 import functools
 import re
 import sys
@@ -21,7 +20,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.arrays import content
+from ffsr_plan.core.errors import InvalidInput, nearest_name
 
 if sys.version_info >= (3, 11):
     from typing import dataclass_transform
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Kept = TypeVar("Kept", covariant=True)
 Accepted = TypeVar("Accepted", contravariant=True)
+_OR_NONE = ", or None"
 
 
 class Given(Generic[Kept, Accepted]):
@@ -63,27 +64,27 @@ def setting(*, default: Any = MISSING, default_factory: Any = MISSING) -> Any:  
 @overload
 def settings(cls: type[T], /) -> type[T]: ...
 @overload
-def settings(*, eq: bool = True, of: str = "") -> Callable[[type[T]], type[T]]: ...
+def settings(*, of: str = "") -> Callable[[type[T]], type[T]]: ...
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(field, setting))
-def settings(cls: type[T] | None = None, /, *, eq: bool = True, of: str = "") -> Any:
+def settings(cls: type[T] | None = None, /, *, of: str = "") -> Any:
     """Make a frozen dataclass whose constructor checks and converts its arguments.
 
     `dataclasses.replace`, `fields` and `asdict` work as for any dataclass, and `replace` checks
-    again. A mapping is accepted where a field's type is itself a settings class.
+    again. A mapping is accepted where a field's type is itself a settings class. Two objects are
+    equal if they are of one class and their fields are equal, arrays element by element.
 
     Args:
         cls: the class, if the decorator has no arguments.
-        eq: whether objects compare by their fields; otherwise by identity.
         of: what the fields belong to, for errors: `mass of the bus` instead of `mass`.
 
     Raises:
         InvalidInput: by the constructor: a missing, unknown or refused argument.
     """
     if cls is None:
-        return functools.partial(_make, eq=eq, of=of)
-    return _make(cls, eq=eq, of=of)
+        return functools.partial(_make, of=of)
+    return _make(cls, of=of)
 
 
 def part_of(
@@ -135,8 +136,8 @@ def field_descriptions(cls: type) -> dict[str, str]:
     return found
 
 
-def _make(cls: type[T], *, eq: bool, of: str) -> type[T]:
-    made: Any = dataclass(frozen=True, eq=eq)(cls)
+def _make(cls: type[T], *, of: str) -> type[T]:
+    made: Any = dataclass(frozen=True, eq=False)(cls)
     names = [each.name for each in fields(made)]
 
     def construct(self: T, *arguments: object, **named: object) -> None:
@@ -154,7 +155,14 @@ def _make(cls: type[T], *, eq: bool, of: str) -> type[T]:
         except ValidationError as error:
             raise _in_our_words(made, error, of) from None
 
+    def key(self: T) -> object:
+        return content([getattr(self, name) for name in names])
+
     made.__init__ = functools.wraps(made.__init__)(construct)
+    made.__eq__ = lambda self, other: (
+        key(self) == key(other) if type(other) is made else NotImplemented
+    )
+    made.__hash__ = lambda self: hash(key(self))
     made.__pydantic_config__ = {
         "extra": "forbid",
         "arbitrary_types_allowed": True,
@@ -197,7 +205,8 @@ def from_mapping(cls: type[T], value: object) -> T:
     except UnknownKey:
         raise
     except InvalidInput as error:
-        raise InvalidInput(f".{error.what}", error.value, error.allowed) from None
+        allowed = error.allowed.removesuffix(_OR_NONE)  # in a file, the key is left out
+        raise InvalidInput(f".{error.what}", error.value, allowed) from None
 
 
 class UnknownKey(InvalidInput):
@@ -210,8 +219,8 @@ class UnknownKey(InvalidInput):
     """
 
     def __init__(self, key: str, known: Sequence[str], path: str = "", of: str = "") -> None:
-        nearest = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
-        hint = f" (did you mean '{path}{nearest[0]}'?)" if nearest else ""
+        nearest = nearest_name(key, known)
+        hint = "" if nearest is None else f" (did you mean '{path}{nearest}'?)"
         names = ", ".join(path + name for name in known) or "nothing"
         super().__init__(f"unknown key{of and ' of '}{of}", path + key, names + hint)
         self.key, self.known, self.path = key, tuple(known), path
@@ -246,9 +255,12 @@ def _in_our_words(cls: type, error: ValidationError, of: str) -> InvalidInput:
     elif kind.startswith("missing"):
         value, allowed = None, "a value: it is required"
     elif kind in ("tuple_type", "list_type"):
-        allowed = "a list"
+        table = isinstance(value, Mapping)
+        allowed = "a list of tables, [[name]] in a file" if table else "a list"
     else:
         allowed = first["msg"].removeprefix("Input should be ")
+    if len(place) == 1 and "None" not in allowed and _may_be_none(cls, place[0]):
+        allowed += _OR_NONE
     if of:
         path = re.sub(r"^[\w.]+", lambda found: f"{found[0]} of {of}", path, count=1)
     return InvalidInput(path, value, allowed)
@@ -266,6 +278,12 @@ def _nested(cls: type, path: Sequence[str]) -> type:
     return cls
 
 
+def _may_be_none(cls: type, name: str) -> bool:
+    from typing import get_args, get_type_hints
+
+    return type(None) in get_args(get_type_hints(cls)[name])
+
+
 def _call(cls: type) -> str:
     return f"{cls.__name__}({', '.join(each.name for each in fields(cls))})"
 
@@ -275,8 +293,9 @@ def _joined(place: list[str], what: str) -> str:
     path = ".".join(place)
     if not place or not what or what.startswith("."):
         return path + what
-    if re.match(rf"{re.escape(place[-1])}\b", what):
-        return ".".join([*place[:-1], what])
+    field = next((step for step in reversed(place) if not step.isdecimal()), "")
+    if re.match(rf"{re.escape(field)}\b", what):  # entries of a list are named by their field
+        return path + what[len(field) :]
     return f"{path}: {what}"
 
 

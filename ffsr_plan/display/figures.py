@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ffsr_plan.core.formatting import proven
+from ffsr_plan.core.text_files import write_files
 from ffsr_plan.display.picture_data import drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.projection import outlines, view_axes
 
@@ -131,15 +133,28 @@ def write_figures(plan: PlanData, directory: Path) -> list[Path]:
     Returns:
         The paths of the files.
     """
+    files = {directory / name: picture for name, picture in figure_files(plan).items()}
+    write_files("directory", files)
+    return list(files)
+
+
+def figure_files(plan: PlanData) -> dict[str, bytes]:
+    """Contents of the files `path.png`, `clearance.png` and `convergence.png` of a plan.
+
+    Args:
+        plan: the plan.
+    """
     figures = {
-        "path": path_figure(plan),
-        "clearance": clearance_figure(plan),
-        "convergence": convergence_figure(plan),
+        "path.png": path_figure(plan),
+        "clearance.png": clearance_figure(plan),
+        "convergence.png": convergence_figure(plan),
     }
-    written = [directory / f"{name}.png" for name in figures]
-    for target, figure in zip(written, figures.values(), strict=True):
-        figure.savefig(target, dpi=150)
-    return written
+    files = {}
+    for name, figure in figures.items():
+        content = io.BytesIO()
+        figure.savefig(content, dpi=150, format="png")
+        files[name] = content.getvalue()
+    return files
 
 
 def _axes(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes]:

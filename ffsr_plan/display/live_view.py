@@ -7,7 +7,7 @@ import math
 import time
 from functools import cache
 
-from ffsr_plan.core.checks import number, truth
+from ffsr_plan.core.checks import number, text, truth
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display.browser import in_notebook, open_in_browser
 from ffsr_plan.display.cycle_picture import Snapshot, commands, take
@@ -71,7 +71,7 @@ class LiveView:
             raise InvalidInput("problem", problem, "a Problem")
         opens = not in_notebook() if open_browser is None else truth("open_browser", open_browser)
         self._pace = number("pace", pace, at_least=0.0, at_most=60.0)
-        self._title = title
+        self._title = title = text("title", title)
         self._lattice = LayeredLattice(problem)
         self._history: list[tuple[int, float | None, float | None]] = []
         self._next_picture = self._last_cycle = -math.inf

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,9 +10,11 @@ import numpy as np
 
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.checks import one_of, whole_number
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.core.text_files import write_files
 from ffsr_plan.display.picture_data import MotionFrames, drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.projection import Outline, outlines, view_axes, visible_shapes
 from ffsr_plan.display.scene_objects import TIPS, TRACK, glow
@@ -32,6 +35,7 @@ _OBSTACLE, _CLEARANCE, _CONTACT = "#aeb4bf", "#5fb3ce", "#b02a30"
 _START, _GOAL, _ATTITUDE = "#4fb3d9", "#58c27d", "#f0b429"
 _DASHES, _DOTS = (0, (4, 3)), (0, (1, 2))
 _PANEL = 170  # height of the panel below the scene [px]
+_BYTES_PER_PIXEL = 6  # of a frame: in colours, and as it is written
 _MARGIN = 0.3  # around what is shown [m]
 _ASPECTS = (0.25, 0.58)  # least and greatest height of the scene, in widths
 _FRAME_TIME, _LAST_TIME = 80, 1400  # duration of a frame, and of the last one [ms]
@@ -67,7 +71,7 @@ def write_gif(
 
     Args:
         plan: the plan.
-        path: file to write; an existing one is replaced.
+        path: file to write, `.gif`; an existing one is replaced.
         frames: number of pictures, at equal steps of the path parameter.
         width: of the picture [px].
         view: `path`, seen along the normal y' of the path frame, or `side`, along the lateral x'.
@@ -77,19 +81,19 @@ def write_gif(
     """
     from PIL.Image import Dither
 
+    target = checked_path("path", path, ".gif")
     count = whole_number("frames", frames, at_least=2, at_most=600)
     pixels = whole_number("width", width, at_least=300, at_most=4000)
+    size = {"frames": count, "pixels": pixels * round(_ASPECTS[1] * pixels + _PANEL)}
+    check_memory("frames", size, _BYTES_PER_PIXEL, "fewer frames or a smaller width")
     rows = list(VIEWS[one_of("view", view, tuple(VIEWS))])
     pictures = _pictures(_scene(plan, count, view_axes(plan.problem)[rows]), pixels)
     palette = _palette(pictures, plan)
     first, *rest = [picture.quantize(palette=palette, dither=Dither.NONE) for picture in pictures]
     durations = [_FRAME_TIME] * (count - 1) + [_LAST_TIME]
-    try:
-        first.save(
-            path, format="GIF", save_all=True, append_images=rest, duration=durations, loop=0
-        )
-    except OSError as error:
-        raise InvalidInput("path", str(path), f"a file that can be written ({error})") from None
+    content = io.BytesIO()
+    first.save(content, format="GIF", save_all=True, append_images=rest, duration=durations, loop=0)
+    write_files("path", {target: content.getvalue()})
 
 
 def _scene(plan: PlanData, count: int, axes: Array) -> _Scene:

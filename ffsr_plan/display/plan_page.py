@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.display.meshcat_objects import CommandLog, MeshcatNode
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
 
 _SECONDS = 12.0  # duration of the motion on the page; a plan has no time law of its own
 _FRAMES_PER_EDGE = 8
+_LARGEST_TURN = 0.5  # [rad] of a joint between two frames; the page interpolates the shorter way
+_MOST_FRAMES = 4000
+_BYTES_PER_POSE = 4000  # of a link in a frame
 
 
 def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
@@ -49,7 +53,10 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
     log = CommandLog()
     viewer = meshcat.Visualizer(window=log)
     problem, scene = plan.problem, plan.problem.scene
-    samples = problem.lattice.divisions * _FRAMES_PER_EDGE + 1
+    samples = problem.lattice.divisions * frames_per_edge(plan) + 1
+
+    size = {"frames": samples, "joints": problem.robot.nd + 1}
+    check_memory("page", size, _BYTES_PER_POSE, "a plan with fewer divisions")
     frames = motion_frames(problem.robot, plan.at(np.linspace(0.0, 1.0, samples)))
     centers, radii = frames.bounding_spheres()
     view = set_up(viewer, problem, centers, radii)
@@ -74,14 +81,23 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
     return html_page("plan", data)
 
 
+def frames_per_edge(plan: PlanData) -> int:
+    """More than the usual number where a joint goes far on an edge."""
+    farthest = float(np.max(np.abs(np.diff(plan.motion.joint_values, axis=0)), initial=0.0))
+    most = max(_FRAMES_PER_EDGE, _MOST_FRAMES // plan.motion.edges)
+    return min(max(_FRAMES_PER_EDGE, int(np.ceil(farthest / _LARGEST_TURN))), most)
+
+
 def _summary(plan: PlanData) -> str:
     """Planner and figures of merit in one line."""
     gap = "lattice gap" if plan.optimum_is_exact else "gap to a lower bound"
+    unchecked = plan.problem.robot.unchecked_links
     clearance = f"proven clearance {proven(plan.certificate.least_clearance)}"
     return (
         f"{plan.planner.name}: L {plan.length:.3f} m, F {plan.objective:.2f}, "
         f"δ {plan.problem.delta:g}, {gap} {plan.gap:.2%}, "
         + (clearance if len(plan.problem.scene) else "no obstacles")
+        + (f", links not checked: {', '.join(unchecked)}" if unchecked else "")
     )
 
 

@@ -20,13 +20,14 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, equal_by_content
 from ffsr_plan.core.rotations import cross
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.kinematics import turned
 
 
+@equal_by_content
 class States(NamedTuple):
     """Position, velocity, acceleration and forces of a motion at N instants.
 

@@ -11,9 +11,9 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.errors import unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.rotations import IDENTITY, angle_rate_matrix, to_angles
-from ffsr_plan.robots.kinematics import turned
+from ffsr_plan.robots.kinematics import frame_index, turned
 from ffsr_plan.robots.robot import SpaceRobot
 
 
@@ -34,7 +34,7 @@ def connection(robot: SpaceRobot, q: ArrayLike) -> Array:
     Raises:
         InvalidInput: a configuration that the robot does not have.
     """
-    q = robot.check_configuration("q", q)
+    q = _configuration(robot, q)
     return connections(robot, robot.joint_values(q)[None])[0]
 
 
@@ -50,7 +50,18 @@ def connections(robot: SpaceRobot, joint_values: Array) -> Array:
     """
     if robot.nd == 0:
         return np.zeros((len(joint_values), 3, 0))
-    angular = angular_maps(robot, joint_values)
+    return connections_of(angular_maps(robot, joint_values))
+
+
+def connections_of(angular: Array) -> Array:
+    """The mechanical connection from the maps to angular momentum.
+
+    Args:
+        angular: (N, 3, 3 + nd) see `angular_maps`.
+
+    Returns:
+        (N, 3, nd) matrices A(theta).
+    """
     return np.asarray(-np.linalg.solve(angular[:, :, :3], angular[:, :, 3:]), dtype=np.float64)
 
 
@@ -107,7 +118,7 @@ def attitude_rate_map(robot: SpaceRobot, q: ArrayLike) -> Array:
     Raises:
         InvalidInput: beta = +-90 degrees, where the ZYX angles are singular.
     """
-    q = robot.check_configuration("q", q)
+    q = _configuration(robot, q)
     rates = np.linalg.solve(angle_rate_matrix(to_angles(q[3:7])), connection(robot, q))
     return np.asarray(rates, dtype=np.float64)
 
@@ -122,7 +133,7 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
     Args:
         robot: the robot.
         q: (nq,) configuration.
-        frame: name of a link, joint or other frame of the model.
+        frame: name of a link, joint or other frame of the model; the link of several of one name.
 
     Returns:
         (6, nd) matrix J*.
@@ -130,15 +141,19 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
     Raises:
         InvalidInput: unknown frame, with the nearest name.
     """
-    q = robot.check_configuration("q", q)
+    q = _configuration(robot, q)
     model = robot.model
-    if not model.existFrame(frame):
-        raise unknown_name("frame", frame, [f.name for f in model.frames])
+    index = frame_index(robot.model, frame)
     data = model.createData()
     pin.computeCentroidalMap(model, data, q)
     momentum_map = np.array(data.Ag)
-    jacobian = pin.computeFrameJacobian(
-        model, data, q, model.getFrameId(frame), pin.LOCAL_WORLD_ALIGNED
-    )
+    jacobian = pin.computeFrameJacobian(model, data, q, index, pin.LOCAL_WORLD_ALIGNED)
     base_rate = np.linalg.solve(momentum_map[:, :6], momentum_map[:, 6:])
     return jacobian[:, 6:] - jacobian[:, :6] @ base_rate
+
+
+def _configuration(robot: SpaceRobot, q: ArrayLike) -> Array:
+    """(nq,) a configuration that the robot has."""
+    if not isinstance(robot, SpaceRobot):
+        raise InvalidInput("robot", robot, "a SpaceRobot")
+    return robot.check_configuration("q", q)

@@ -101,8 +101,7 @@ class Motion:
     @property
     def turn(self) -> Array:
         """(3,) angular velocity of a base that does not react, base axes [rad per edge]."""
-        whole = rotations.log(rotations.multiply(rotations.inverse(self._start), self._goal))
-        return whole / self.edges
+        return rotations.rotation_vector(self._start, self._goal) / self.edges
 
     def displaced(self, offsets: Array) -> Motion:
         """The same motion with the base displaced; its attitudes and joints do not change.

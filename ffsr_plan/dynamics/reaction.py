@@ -14,7 +14,7 @@ from numpy.polynomial import legendre
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import IntegrationError
-from ffsr_plan.dynamics.momentum import connections
+from ffsr_plan.dynamics.momentum import angular_maps, connections_of
 from ffsr_plan.robots.robot import SpaceRobot
 
 _ORDER = 8  # Legendre polynomials of each component of omega in a substep
@@ -28,6 +28,8 @@ _FIRST_SUBSTEP = 0.2  # [rad or m] largest joint step of a substep in the first 
 _ANGLE_TOLERANCE = 1e-11  # [rad] error over an edge
 _RATE_TOLERANCE = 1e-11  # last Legendre coefficient, relative to the angular velocity
 _MOST_SUBSTEPS = 4096
+_OF_WHOLE = 2.0  # error of whole steps relative to their difference from halves; 64 / 63 at best
+_ROUNDING = 4.0 * np.finfo(np.float64).eps  # relative, of momentum and inertia
 
 
 class Reaction:
@@ -56,6 +58,14 @@ class Reaction:
         Raises:
             IntegrationError: the error is too large with 4096 substeps.
         """
+        self._integrate(robot, begin, steps, substeps)
+        self.error = self._estimate(steps)
+        del self._angular
+
+    def _integrate(
+        self, robot: SpaceRobot, begin: Array, steps: Array, substeps: int | None
+    ) -> None:
+        """Expand in `substeps`, or in as many as the tolerance needs."""
         if substeps is not None:
             self._expand(robot, begin, steps, substeps)
             return
@@ -114,7 +124,9 @@ class Reaction:
         edges = len(steps)
         times = (np.arange(substeps)[:, None] + 0.5 * (1.0 + _X)) / substeps
         theta = begin[:, None, None] + times[None, :, :, None] * steps[:, None, None]
-        maps = connections(robot, theta.reshape(edges * substeps * _ORDER, robot.nd))
+        angular = angular_maps(robot, theta.reshape(edges * substeps * _ORDER, robot.nd))
+        self._angular = angular.reshape(edges, substeps, _ORDER, 3, 3 + robot.nd)
+        maps = connections_of(angular)
         maps = maps.reshape(edges, substeps, _ORDER, 3, robot.nd)
         # where the arms' contributions cancel, their magnitudes determine the rounding error
         self._scale = float(
@@ -129,9 +141,7 @@ class Reaction:
         )
         whole = steps_made[:, :, 0]
         halves = rotations.multiply(steps_made[:, :, 1], steps_made[:, :, 2])
-        self.error = float(
-            np.max(np.sum(rotations.angle_between(whole, halves), axis=1), initial=0)
-        )
+        self._of_steps: Array = np.sum(rotations.angle_between(whole, halves), axis=1)
         starts = [np.broadcast_to(rotations.IDENTITY, (edges, 4))]
         for k in range(substeps):
             starts.append(rotations.multiply(starts[-1], whole[:, k]))
@@ -140,7 +150,28 @@ class Reaction:
 
     def _converged(self) -> bool:
         sizes = np.max(np.abs(self._coefficients), axis=(0, 1, 3), initial=0.0)
-        return bool(self.error <= _ANGLE_TOLERANCE and sizes[-1] <= _RATE_TOLERANCE * self._scale)
+        largest = float(np.max(self._of_steps, initial=0.0))
+        return bool(largest <= _ANGLE_TOLERANCE and sizes[-1] <= _RATE_TOLERANCE * self._scale)
+
+    def _estimate(self, steps: Array) -> float:
+        """Estimated angular error: of the steps, of the series, and of rounding.
+
+        Rounding changes inertia and momentum by some eps of their largest entries. Where the arms
+        carry the centre of mass close to the base's, the inertia is much smaller than that, and the
+        angular velocity changes by as much more.
+        """
+        if not self._angular.size:
+            return 0.0
+        inertias = self._angular[..., :3]
+        stiff = np.linalg.norm(np.linalg.inv(inertias), axis=(-2, -1))
+        rates = np.einsum("lx,ekli->ekxi", legendre.legvander(_X, _ORDER - 1).T, self._coefficients)
+        momenta = np.linalg.norm(inertias, axis=(-2, -1)) * np.linalg.norm(rates, axis=-1)
+        momenta += np.einsum("eknij,ej->ekn", np.abs(self._angular[..., 3:]), np.abs(steps))
+        of_rounding = np.sum(0.5 * _WEIGHTS * stiff * momenta, axis=(1, 2)) / self._substeps
+        last = np.max(np.abs(self._coefficients[:, :, -1]), axis=-1)
+        of_series = np.sum(last, axis=1) / self._substeps
+        estimates = _OF_WHOLE * self._of_steps + of_series + _ROUNDING * of_rounding
+        return float(np.max(estimates, initial=0.0))
 
     def _step(self, coefficients: Array, begin: Array, end: Array) -> Array:
         """Rotation (..., 4) over local times begin -> end (in [0, 1]) of a substep."""

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, equal_by_content
 from ffsr_plan.core.checks import finite_array, number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.dynamics.momentum import angular_maps
@@ -24,6 +24,7 @@ from ffsr_plan.robots.kinematics import turned
 _SAMPLES = 1001  # default number of times; the error of a smooth peak is about 1e-5 of it
 
 
+@equal_by_content
 class WheelMomentum(NamedTuple):
     """Angular momentum stored in the wheels at N times.
 

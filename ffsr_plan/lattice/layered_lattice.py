@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
-from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.rotations import level_direction
 from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.lattice.memory_estimate import check_lattice
 from ffsr_plan.problem.problem import Problem
-
-MOST_EDGES = 50_000_000  # some 60 bytes each while a colony runs
 
 
 def path_frame(travel: Array) -> Array:
@@ -45,16 +42,10 @@ class LayeredLattice:
     """
 
     def __init__(self, problem: Problem) -> None:
+        check_lattice(problem)
         self.problem = problem
         lattice = problem.lattice
         axes = [getattr(lattice, name) for name in lattice.axes]
-        nodes = math.prod(2 * a.half_count + 1 for a in axes)
-        if lattice.divisions * nodes**2 > MOST_EDGES:
-            raise InvalidInput(
-                "lattice",
-                f"{nodes} nodes a layer and {lattice.divisions} divisions",
-                f"divisions x nodes^2 of at most {MOST_EDGES:.0e}, to limit memory use",
-            )
         counts = [np.arange(-a.half_count, a.half_count + 1) for a in axes]
         grids = np.meshgrid(*counts, indexing="ij")
         self.indices: IntArray = (

@@ -6,12 +6,16 @@ import copy
 
 import numpy as np
 
+from ffsr_plan.collision.contacts import named
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
 from ffsr_plan.core.errors import InvalidInput, NoPath
+from ffsr_plan.core.formatting import Contact
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.lattice.memory_estimate import check_lattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
+from ffsr_plan.problem.advice import against_obstacles, against_self_collision
 from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict, certify
@@ -36,6 +40,7 @@ class Roadmap:
             NoPath: the arms collide with each other on an edge of the nominal motion, whatever the
                 offsets.
         """
+        check_lattice(problem)
         if problem.lattice.postures:
             raise InvalidInput(
                 "lattice postures",
@@ -46,7 +51,7 @@ class Roadmap:
         self.lattice = LayeredLattice(problem)
         self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)
         self.prover.check_ends()
-        self.prover.check_self_collision()
+        self.prover.check_self_collision(against_self_collision())
         self.nodes = NodeClearances(self.lattice, self.prover)
         m, n = self.lattice.divisions, self.lattice.size
         self.status: States = np.zeros((m, n, n), dtype=np.int8)
@@ -243,7 +248,10 @@ class Roadmap:
             heads = np.flatnonzero(admissible[layer + 1]).tolist()
             onwards = [k for k in heads if any(self.free(layer, j, k) for j in reached)]
             if not onwards:
-                return NoPath(layer + 1, self._closing(layer), m)
+                contacts = self._closing(layer)
+                spheres = sorted({c.obstacle for c in contacts if isinstance(c.obstacle, int)})
+                advice = against_obstacles(self.problem)
+                return NoPath(layer + 1, tuple(spheres), m, contacts, advice)
             reached = onwards
         return None
 
@@ -254,8 +262,11 @@ class Roadmap:
             self.nodes.learn(path)
         return float(self.nodes.bounds[layer, node])
 
-    def _closing(self, layer: int) -> tuple[int | str, ...]:
-        """What blocks the edges of a layer that were looked at, and the nodes they lead to."""
+    def _closing(self, layer: int) -> tuple[Contact, ...]:
+        """What blocks the edges of a layer that were looked at, and the nodes they lead to.
+
+        One contact for each pair of link and sphere, the deepest.
+        """
         offsets, nearest = self.lattice.offsets, []
         for (i, tail, head), verdict in self._verdicts.items():
             if i == layer and not verdict.free:
@@ -263,8 +274,9 @@ class Roadmap:
         if layer + 1 < self.lattice.divisions:
             for at in offsets[~self.admissible[layer + 1]]:
                 nearest.append(self.prover.nearest(layer + 1, at, at, 0.0))
-        names = {pair.obstacle for pair in nearest if pair.obstacle is not None}
-        return tuple(sorted(names, key=lambda name: (isinstance(name, str), name)))
+        nearest.sort(key=lambda pair: pair.distance)
+        pairs = {(pair.link, pair.obstacle): pair for pair in reversed(nearest)}
+        return tuple(named(self.problem.scene, p) for p in pairs.values() if p.obstacle is not None)
 
 
 def rule_out(

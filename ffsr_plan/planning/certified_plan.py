@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ffsr_plan.core.checks import whole_number
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.checks import text, whole_number
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.formatting import html_table, proven
+from ffsr_plan.core.text_files import write_text
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
-from ffsr_plan.trajectory.csv_tables import path_table, write_csv
-from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
+from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_csv
+from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits, refuse_limits_without_actuator
 from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
 
 if TYPE_CHECKING:
@@ -49,14 +52,15 @@ class Plan(PlanData):
 
         Args:
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
-            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]; without meaning
-                where the robot floats freely.
+            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]. This and
+                other limits of thrusters and of the base's velocity are refused where it floats.
             joint_velocity: [rad/s or m/s]; the URDF's for joints not named.
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
             joint_jerk: [rad/s^3 or m/s^3].
             thruster_jerk: of the base origin [m/s^3].
-            turn_velocity: angular velocity of a base that wheels rotate [rad/s].
+            turn_velocity: angular velocity of a base that wheels rotate [rad/s]; refused without
+                wheels, as the next.
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
             velocity_jump: by how much thrusters may change the velocity of the base in one pulse
                 [m/s]; instead of resting at a corner of its path, the robot then passes it at the
@@ -84,21 +88,38 @@ class Plan(PlanData):
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
+        refuse_limits_without_actuator(
+            self.problem.mode,
+            base_velocity=base_velocity,
+            thruster_acceleration=thruster_acceleration,
+            thruster_jerk=thruster_jerk,
+            turn_velocity=turn_velocity,
+            turn_acceleration=turn_acceleration,
+            velocity_jump=velocity_jump,
+        )
         return timed(self.motion, limits, self.certificate.least_clearance)
 
-    def verify(self, samples: int = 2000) -> Report:
-        """Check the plan again, densely and by other code than the planner's; see `verify`.
+    def verify(
+        self, samples: int | None = None, on_progress: Callable[[float], object] | None = None
+    ) -> Report:
+        """Check the plan again, all along and by other code than the planner's; see `Report`.
 
         Args:
-            samples: distance checks per edge.
-        """
-        from ffsr_plan.verification.verify import verify
+            samples: least number of equal time steps on each edge, 50 by default. Where links are
+                closer to obstacles or to each other than they can move in such a step, it is halved
+                until nothing can be hidden between two samples.
+            on_progress: called with the share of the motion that is done, from 0 to 1.
 
-        return verify(self, samples)
+        Raises:
+            InvalidInput: `samples` is not a positive whole number, or too large.
+        """
+        from ffsr_plan.verification.verify import SAMPLES, verify
+
+        return verify(self, SAMPLES if samples is None else samples, on_progress)
 
     def save(self, path: str | Path) -> None:
         """Write everything to a JSON file; `Plan.load` gives the same plan back, bit for bit."""
-        plan_file.write(self, Path(path))
+        plan_file.write(self, checked_path("path", path))
 
     @staticmethod
     def load(path: str | Path) -> Plan:
@@ -107,7 +128,7 @@ class Plan(PlanData):
         Raises:
             InvalidInput: no such file, cut short, or changed since it was written.
         """
-        return Plan._of(plan_file.read(Path(path)))
+        return Plan._of(plan_file.read(checked_path("path", path)))
 
     def to_dict(self) -> dict[str, Any]:
         """Everything, as in the file that `save` writes, in plain Python values fit for JSON."""
@@ -142,17 +163,25 @@ class Plan(PlanData):
         rows = self.problem.lattice.divisions + 1
         if samples is not None:
             rows = whole_number("samples", samples, at_least=2, at_most=1_000_000)
-        write_csv(Path(path), path_table(self.motion, np.linspace(0.0, 1.0, rows)))
+        target, columns = checked_path("path", path), 11 + self.problem.robot.nd
+        size = {"samples": rows, "columns": columns}
+        check_memory("samples", size, BYTES_PER_CELL, "fewer samples")
+        write_csv(target, path_table(self.motion, np.linspace(0.0, 1.0, rows)))
 
     def write_html(self, path: str | Path, title: str = "") -> None:
-        """Write one self-contained page that shows the motion; it needs no network."""
+        """Write one self-contained page that shows the motion; it needs no network.
+
+        Args:
+            path: of the file; an existing file is replaced.
+            title: heading; by default the robot and the mode.
+
+        Raises:
+            InvalidInput: a path or title that is none, or a file that cannot be written.
+        """
         from ffsr_plan.display.plan_page import page
 
-        text = page(self, title)
-        try:
-            Path(path).write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise InvalidInput("page", str(path), f"a file that can be written ({error})") from None
+        target = checked_path("path", path)
+        write_text("page", target, page(self, text("title", title)))
 
     def write_gif(
         self, path: str | Path, *, frames: int = 60, width: int = 720, view: str = "path"
@@ -199,7 +228,7 @@ class Plan(PlanData):
         from ffsr_plan.display.browser import serve
         from ffsr_plan.display.plan_page import page
 
-        return serve(page(self, title), port, block, open_browser)
+        return serve(page(self, text("title", title)), port, block, open_browser)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):

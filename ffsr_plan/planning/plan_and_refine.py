@@ -5,18 +5,24 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import replace
+from functools import partial
+from typing import Literal
 
 import numpy as np
 
-from ffsr_plan.core.checks import number, truth, whole_number
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.checks import number, one_of, truth, whole_number
+from ffsr_plan.core.errors import AttitudeOutOfReach, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.memory_estimate import check_colonies
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.plans.planner_registry import Planner, planner_of
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.refined_path import refined_path
-from ffsr_plan.search.records import OnCycle, SearchRequest
+from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
+from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
+
+_MOST_WORKERS = 256  # each is a process of some hundred megabytes
 
 
 def plan(
@@ -29,11 +35,13 @@ def plan(
     workers: int = 1,
     time_limit: float | None = None,
     on_cycle: OnCycle | None = None,
+    on_interrupt: Literal["return", "raise"] = "return",
 ) -> Plan:
     """Plan a collision-free motion and certify it.
 
     Ctrl-C and `time_limit` end the search early; the best plan so far is returned, marked as
-    `interrupted`.
+    `interrupted`. Ctrl-C raises KeyboardInterrupt where there is no plan yet, when it is pressed
+    again, and in a call of `plan` that begins within 2 s of such a return: a loop ends.
 
     Args:
         problem: what to plan.
@@ -47,14 +55,16 @@ def plan(
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
         time_limit: [s] for the search, from its beginning. The set-up of the lattice before it, the
-            optimum and the refinement after it, and a single annealing are not cut short.
+            optimum and the refinement after it are not cut short.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.
+        on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
 
     Raises:
         InvalidInput: an argument that is not allowed, or a planner that cannot solve the problem.
-        StartInCollision, GoalInCollision: with link, obstacle and depth.
+        StartInCollision, GoalInCollision: with all links and obstacles that touch.
         NoPath: the lattice holds no free path, with the layer that cannot be passed.
-        AttitudeOutOfReach: the arms were not found to bring about the goal's attitude.
+        AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; `best` is
+            the plan that misses it least.
         UnprovenPath: with posture axes, the path found could not be proven free.
         PlanningError: no path was found in time.
         WorkerDied: a worker process ended without a result.
@@ -65,19 +75,19 @@ def plan(
     chosen = planner_of(planner, problem)
     chosen.refuse(problem)
     rng, seed_number = _generator(seed)
-    request = _request(refine, colonies, workers, time_limit, on_cycle)
-    if chosen.exact and request.colonies > 1:
-        raise InvalidInput("colonies", colonies, f"1 with {chosen.name}: it has one result")
-    if chosen.exact and on_cycle is not None:
-        raise InvalidInput("on_cycle", on_cycle, f"None with {chosen.name}: it has no cycles")
-    solution = chosen.solve(problem, rng, request)
-    return Plan(
-        problem=problem,
-        planner=chosen,
-        seed=seed_number,
-        seconds=time.perf_counter() - begin,
-        **solution._asdict(),
-    )
+    request = _request(chosen, refine, colonies, workers, time_limit, on_cycle)
+    check_colonies(problem, request.colonies)
+    certified = partial(_certified, problem, chosen, seed_number, begin)
+    try:
+        with Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE))) as interruption:
+            solution = chosen.solve(problem, rng, interruption.received_by(request))
+    except AttitudeOutOfReach as error:
+        if isinstance(error.best, Solution):
+            error.best = certified(error.best)
+        raise
+    if interruption.pressed:
+        solution = solution._replace(interrupted=True)
+    return certified(solution)
 
 
 def refine(plan: Plan) -> Plan:
@@ -119,6 +129,7 @@ def refine(plan: Plan) -> Plan:
 
 
 def _request(
+    planner: Planner,
     refine: bool | None,
     colonies: int,
     workers: int,
@@ -128,15 +139,32 @@ def _request(
     if on_cycle is not None and not callable(on_cycle):
         raise InvalidInput("on_cycle", on_cycle, "a function, or None")
     count = whole_number("colonies", colonies, at_least=1)
+    if planner.exact and count > 1:
+        raise InvalidInput("colonies", colonies, f"1 with {planner.name}: it has one result")
+    if planner.exact and on_cycle is not None:
+        raise InvalidInput("on_cycle", on_cycle, f"None with {planner.name}: it has no cycles")
     if on_cycle is not None and count > 1:
         raise InvalidInput("on_cycle", on_cycle, "a callback only where colonies = 1")
     seconds = math.inf if time_limit is None else number("time_limit", time_limit, above=0.0)
     return SearchRequest(
         refine=None if refine is None else truth("refine", refine),
         colonies=count,
-        workers=whole_number("workers", workers, at_least=1),
+        workers=whole_number("workers", workers, at_least=1, at_most=_MOST_WORKERS),
         time_limit=seconds,
         on_cycle=on_cycle,
+    )
+
+
+def _certified(
+    problem: Problem, planner: Planner, seed: int | None, begin: float, solution: Solution
+) -> Plan:
+    """The plan of a solution; `begin` is when it was asked for, by `time.perf_counter`."""
+    return Plan(
+        problem=problem,
+        planner=planner,
+        seed=seed,
+        seconds=time.perf_counter() - begin,
+        **solution._asdict(),
     )
 
 

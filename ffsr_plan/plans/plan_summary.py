@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ffsr_plan.core.formatting import counted, proven
+from ffsr_plan.core.rotations import angle_between
 
 if TYPE_CHECKING:
     from ffsr_plan.plans.plan_data import PlanData
@@ -46,7 +47,10 @@ def _clearance_rows(plan: PlanData) -> list[tuple[str, str]]:
     motion = f"at least {proven(plan.certificate.least_clearance)}"
     if not len(plan.problem.scene):
         nodes = motion = "no obstacles"
-    return [("clearance at nodes", nodes), ("proven along the motion", motion)]
+    rows = [("clearance at nodes", nodes), ("proven along the motion", motion)]
+    if unchecked := plan.problem.robot.unchecked_links:
+        rows.append(("not checked, no shape", ", ".join(unchecked)))
+    return rows
 
 
 def _attitude_rows(plan: PlanData, duration: float | None) -> list[tuple[str, str]]:
@@ -55,12 +59,22 @@ def _attitude_rows(plan: PlanData, duration: float | None) -> list[tuple[str, st
     rows = [("attitude on arrival", text)]
     if plan.arrival_attitude_error is not None:
         error = np.degrees(plan.arrival_attitude_error)
-        rows.append(("goal attitude", f"reached by the arms, error {error:.2g}°"))
+        rows.append(("goal attitude", _reached(float(error))))
+    elif plan.problem.mode.attitude_reacts and plan.problem.lattice.postures:
+        away = np.degrees(angle_between(plan.configurations[-1, 3:7], plan.problem.goal[3:7]))
+        rows.append(("goal attitude", f"not demanded, {away:.3f}° away"))
     if plan.problem.mode.has_wheels and duration is not None:
         peaks = plan.wheel_momentum(duration).axis_peaks
         text = "peak x {:.3g}, y {:.3g}, z {:.3g} N m s in base axes".format(*peaks)
         rows.append((f"wheels, if it takes {duration:g} s", text))
     return rows
+
+
+def _reached(error: float) -> str:
+    """What the arms did about a demanded attitude that they miss by `error` [deg]."""
+    if np.radians(error) > 1e-6:
+        return f"missed by {error:.2g}°"
+    return f"reached by the arms, error {error:.2g}°"
 
 
 def _search_rows(plan: PlanData) -> list[tuple[str, str]]:

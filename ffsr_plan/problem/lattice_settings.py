@@ -22,7 +22,7 @@ class Axis:
     """
 
     half_count: Annotated[int, WholeNumber(at_least=1)]
-    spacing: Annotated[float, Number(above=0.0, at_most=1e6)]
+    spacing: Annotated[float, Number(at_least=1e-9, at_most=1e6)]
 
 
 @settings

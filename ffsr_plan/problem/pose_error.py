@@ -72,6 +72,24 @@ def end_configuration(target: PoseTarget, joint_values: Array) -> Array:
     return motion.configurations()[-1]
 
 
+def end_of_path(target: PoseTarget, begin: Array, change: Array) -> Array:
+    """Like `end_configuration`, of a path on which a continuous joint may go the longer way.
+
+    Args:
+        target: gives the robot, the mode and the start.
+        begin: (nd,) joint values at the start [rad or m].
+        change: (nd,) of the joint values over the path [rad or m].
+    """
+    robot = target.robot
+    if not np.isinf(robot.upper).any():
+        return end_configuration(target, begin + change)
+    ends = np.clip(np.array([begin, begin + change]), robot.lower, robot.upper)
+    goal = robot.assemble(target.base_position, target.base_quat, ends[1])
+    base_positions = np.array([target.start[:3], target.base_position])
+    motion = Motion(robot, target.mode, target.start, goal, base_positions, ends)
+    return motion.configurations()[-1]
+
+
 def pose_error(target: PoseTarget, q: Array) -> Array:
     """(3,) position error [m], or (6,) with the rotation vector [rad] too, world axes.
 
@@ -97,7 +115,7 @@ def pose_jacobian(target: PoseTarget, begin: Array, change: Array) -> Array:
     Returns:
         (3, nd) or (6, nd), J of the module's docstring.
     """
-    robot, q = target.robot, end_configuration(target, begin + change)
+    robot, q = target.robot, end_of_path(target, begin, change)
     model, data, pose = robot.model, robot.model.createData(), _frame_pose(target, q)
     if target.mode.floats:
         jacobian = generalized_jacobian(robot, q, model.frames[target.frame].name)

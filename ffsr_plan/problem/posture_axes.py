@@ -32,7 +32,14 @@ class JointDirection(Rule):
             pairs = dict(value)
         except (TypeError, ValueError):
             raise InvalidInput(what, value, allowed) from None
-        moves = {str(name): number(f"{what}.{name}", each) for name, each in pairs.items()}
+        if len(pairs) < len(value):
+            names = [str(name) for name, _ in value]  # a sequence: a mapping has no name twice
+            twice = sorted({name for name in names if names.count(name) > 1})
+            raise InvalidInput(what, f"{', '.join(twice)} more than once", "each joint once")
+        moves = {
+            str(name): number(f"{what}.{name}", each, at_least=-1e9, at_most=1e9)
+            for name, each in pairs.items()
+        }
         if not any(moves.values()):
             raise InvalidInput(what, value, "a joint that moves")
         return tuple(moves.items())
@@ -124,7 +131,8 @@ class PostureAxis(_JointAxis):
 class PostureTarget(_JointAxis):
     """Displacements of the joints towards a posture: by k / levels of the difference to it.
 
-    Index k is in 0 .. levels. Joints that the posture does not name are not displaced.
+    Index k is in 0 .. levels. Joints that the posture does not name are not displaced. Continuous
+    joints go to the value that the posture states, whole turns included.
 
     Attributes:
         towards: name of the posture, from the robot's SRDF.

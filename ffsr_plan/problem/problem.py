@@ -9,10 +9,11 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.collision.contacts import contacts
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.formatting import counted, html_table
-from ffsr_plan.core.rotations import angle_between, to_angles
+from ffsr_plan.core.formatting import contact_list, counted, html_table
+from ffsr_plan.core.rotations import rotation_vector, to_angles
 from ffsr_plan.core.setting_rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.dynamics.actuation_mode import Mode
@@ -21,6 +22,8 @@ from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
+_LEAST, _LARGEST = 1e-9, 1e9  # of weights and units: no product of them overflows
+_FARTHEST_TRAVEL = 500.0  # [rad or m] of a joint; the reaction is worked out every 0.025
 _SAME = 1e-12  # metres or radians by which two positions or joint values may differ and be equal
 
 
@@ -33,7 +36,28 @@ class Configuration(Rule):
         if "robot" not in others:  # refused already
             return value
         robot: SpaceRobot = others["robot"]
-        return robot.check_configuration(what, value)  # type: ignore[arg-type]
+        try:
+            return robot.check_configuration(what, value)  # type: ignore[arg-type]
+        except InvalidInput as error:
+            touching = _touching(robot, others.get("scene", Scene()), what, value)
+            if not touching:
+                raise
+            allowed = f"{error.allowed}; at these values, {touching}"
+            raise InvalidInput(error.what, error.value, allowed) from None
+
+
+def _touching(robot: SpaceRobot, scene: Scene, what: str, value: object) -> str:
+    """What touches at a configuration with joint values outside their limits.
+
+    Obstacles count at the start only: where the base is at the goal depends on the mode.
+    """
+    q = np.array(value, dtype=np.float64)
+    size = float(np.linalg.norm(q[3:7])) if q.shape == (robot.model.nq,) else 0.0
+    if not (np.all(np.isfinite(q)) and size > 0.5):
+        return ""
+    q[3:7] /= size
+    found = contacts(robot, scene if what == "start" else Scene(), q)
+    return contact_list(found) if found else ""
 
 
 @dataclass(frozen=True)
@@ -49,9 +73,9 @@ class ModeName(Rule):
         return {"type": "string", "enum": [mode.value for mode in Mode]}
 
 
-@settings(eq=False)
+@settings
 class Problem:
-    """A planning problem.
+    """A planning problem. Two are equal if all their fields are.
 
     Attributes:
         robot: the robot.
@@ -59,10 +83,13 @@ class Problem:
         start: (nq,) start configuration.
         goal: (nq,) goal configuration. In the mode `free-flying` its attitude is not demanded: the
             attitude follows from the arms' motion. In the mode `free-floating` its position is not
-            demanded either.
+            demanded either. Joints go straight to its values, a revolute one with limits beyond a
+            turn the longer way too, if the values say so; continuous ones go the shorter way.
         mode: what actuates the base. `free-flying`: thrusters translate it along the lattice,
             acting through the centre of mass; the attitude reacts to the arms. `attitude-held`:
-            wheels hold the attitude interpolated from start to goal. `free-floating`: attitude and
+            wheels hold the attitude interpolated from start to goal, through the smaller angle; of
+            half a turn, within 2e-10 rad, in the sense that is positive about the first axis of the
+            base (x, y, z) that takes part. `free-floating`: attitude and
             position react; the centre of mass stays where it is.
         lattice: layers and offsets; None for `Lattice()`.
         delta: clearance weight of Eq. 8, in units of length squared, >= 0.
@@ -72,8 +99,8 @@ class Problem:
         position_weight: metres of length per metre of translation (Eq. 4).
         rotation_weight: metres of length per radian of joint or held-base rotation (Eq. 4).
         tolerance: clearance [m] below which an edge may count as blocked.
-        reach_attitude: whether the arms have to bring the base to the goal's attitude; in the modes
-            whose attitude reacts, on a lattice with posture axes.
+        reach_attitude: whether the arms have to bring the base to the goal's attitude, within 1e-8
+            rad; in the modes whose attitude reacts, on a lattice with posture axes.
 
     Raises:
         InvalidInput: naming the field, its value and what is allowed.
@@ -87,17 +114,16 @@ class Problem:
     lattice: Annotated[Given[Lattice, Lattice | None], NoneMeans(Lattice)] = setting(
         default_factory=Lattice
     )
-    delta: Annotated[float, Number(at_least=0.0)] = 0.0
-    length_unit: Annotated[float, Number(above=0.0)] = 1.0
-    clearance_cap: Annotated[float, Number(above=0.0)] | None = None
-    position_weight: Annotated[float, Number(above=0.0)] = 1.0
-    rotation_weight: Annotated[float, Number(at_least=0.0)] = 1.0
-    tolerance: Annotated[float, Number(at_least=1e-7)] = 1e-4
+    delta: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 0.0
+    length_unit: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] = 1.0
+    clearance_cap: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] | None = None
+    position_weight: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] = 1.0
+    rotation_weight: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 1.0
+    tolerance: Annotated[float, Number(at_least=1e-7, at_most=_LARGEST)] = 1e-4
     reach_attitude: Annotated[bool, Truth()] = False
 
     def __post_init__(self) -> None:
-        for axis in self.lattice.postures:
-            axis.displacement(self.robot, self.robot.joint_values(self.start))
+        self._check_travel()
         self._check_attitude()
         self._check_displacement()
 
@@ -163,7 +189,8 @@ class Problem:
         """Angle from the start's to the goal's attitude [rad] if wheels hold it, otherwise 0."""
         if self.mode.attitude_reacts:
             return 0.0
-        return float(angle_between(self.start[3:7], self.goal[3:7]))
+        vector = rotation_vector(self.start[3:7], self.goal[3:7])
+        return float(np.linalg.norm(vector, axis=-1))
 
     @property
     def delta_d(self) -> float:
@@ -174,6 +201,19 @@ class Problem:
         radians = np.append(joints[~slide], self.held_rotation) * self.rotation_weight
         total = float(np.sqrt(np.sum(metres**2) + np.sum(radians**2)))
         return total / self.lattice.divisions
+
+    def _check_travel(self) -> None:
+        """Raise `InvalidInput` for joints that travel so far that the reaction takes too long."""
+        allowed = f"at most {_FARTHEST_TRAVEL:g} rad or m"
+        for name, change in zip(self.robot.joint_names, self.joint_displacement, strict=True):
+            if abs(change) > _FARTHEST_TRAVEL:
+                raise InvalidInput(f"goal (joint {name}, travel)", float(change), allowed)
+        begin = self.robot.joint_values(self.start)
+        for k, axis in enumerate(self.lattice.postures):
+            way = float(np.max(np.abs(axis.displacement(self.robot, begin)), initial=0.0))
+            farthest = way * float(np.max(np.abs(axis.factors(np.array(axis.indices)))))
+            if farthest > _FARTHEST_TRAVEL:
+                raise InvalidInput(f"lattice postures.{k}, displacement", farthest, allowed)
 
     def _check_attitude(self) -> None:
         """Raise `InvalidInput` if `reach_attitude` is set and cannot be."""

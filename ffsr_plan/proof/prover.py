@@ -10,10 +10,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_collision
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.errors import GoalInCollision, NoPath, StartInCollision
+from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
@@ -49,7 +50,7 @@ class Prover:
             scene: the obstacles.
             tolerance: clearance below which an edge may be refused [m].
         """
-        self._motion, self.tolerance = nominal, tolerance
+        self._motion, self._scene, self.tolerance = nominal, scene, tolerance
         self._obstacles = ObstacleQuery(nominal.robot, scene)
         self._self = SelfQuery(nominal.robot)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
@@ -190,28 +191,35 @@ class Prover:
         """Check that start and goal touch nothing.
 
         Raises:
-            StartInCollision: with link, obstacle and depth.
-            GoalInCollision: with link, obstacle and depth.
+            StartInCollision: with all that touches there, and at the goal.
+            GoalInCollision: with all that touches there.
         """
-        for layer, error in ((0, StartInCollision), (self._motion.edges, GoalInCollision)):
+        robot, scene, goal = self._motion.robot, self._scene, self._motion.edges
+        for layer in (0, goal):
             pairs = (
                 self._obstacles.nearest_at(self._corners, layer, np.zeros(3)),
                 self.nearest_links(layer, 0.0),
             )
-            for nearest in pairs:
-                if nearest.distance <= 0.0:
-                    raise error(nearest.link, nearest.obstacle, -nearest.distance)
+            if min(nearest.distance for nearest in pairs) <= 0.0:
+                configurations = self._motion.configurations()
+                if layer == 0:
+                    raise start_in_collision(robot, scene, configurations[0], configurations[-1])
+                raise goal_in_collision(robot, scene, configurations[-1])
 
-    def check_self_collision(self) -> None:
+    def check_self_collision(self, advice: tuple[str, ...] = ()) -> None:
         """Prove that no links touch each other on any edge, whatever the offsets.
+
+        Args:
+            advice: what may help, for the error.
 
         Raises:
             NoPath: with the first edge on which two links come too close.
         """
         for layer, verdict in enumerate(self.self_verdicts()):
             if not verdict.free:
-                nearest = self.nearest_links(layer, verdict.time)
-                raise NoPath(layer + 1, (nearest.link, str(nearest.obstacle)), self._motion.edges)
+                near = self.nearest_links(layer, verdict.time)
+                links, contacts = (near.link, str(near.obstacle)), (named(self._scene, near),)
+                raise NoPath(layer + 1, links, self._motion.edges, contacts, advice)
 
     def self_verdicts(self) -> list[Verdict]:
         """(m,) for each edge, whether links that must not touch are proven apart."""

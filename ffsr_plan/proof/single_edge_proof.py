@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ffsr_plan.core.arrays import Array, frozen
+from ffsr_plan.core.arrays import Array, equal_by_content, frozen
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.dynamics.actuation_mode import Mode
@@ -17,6 +17,7 @@ from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
 
+@equal_by_content
 class EdgeProof(NamedTuple):
     """Result of `certify_edge`.
 

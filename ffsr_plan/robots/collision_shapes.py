@@ -21,7 +21,8 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.meshes.hull_reduction import beyond, reduced
 from ffsr_plan.meshes.mesh_files import hull, hull_corners
-from ffsr_plan.robots.urdf_validation import LARGEST, attribute_numbers
+from ffsr_plan.robots.urdf.number_texts import attribute_numbers
+from ffsr_plan.robots.urdf.origins import LARGEST
 
 CONTAINERS = ("hull", "capsule")
 SIDES = 24
@@ -294,8 +295,9 @@ def _capsule_around(corners: Array, to_box: Array) -> _Container:
         low = high = 0.5 * (low + high)
     axis = rotation[:, longest]
     ends = rotation @ center + np.outer([low, high], axis)
-    upright = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis).matrix()
-    placement = pin.SE3(upright, 0.5 * (ends[0] + ends[1]))
+    # the other two columns of `rotation`, in cyclic order: a capsule's own axis is z
+    columns = rotation[:, [(longest + 1) % 3, (longest + 2) % 3, longest]]
+    placement = pin.SE3(columns, 0.5 * (ends[0] + ends[1]))
     # the distance from a convex solid is a convex function, so it is greatest at an end
     excess = radius + float(beyond(corners, ends).max())
     solid = coal.Capsule(radius, high - low)

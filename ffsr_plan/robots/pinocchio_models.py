@@ -1,99 +1,78 @@
-"""Pinocchio's kinematic and visual models of a URDF."""
+"""Pinocchio's kinematic and visual models of a canonical URDF."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import copy
+from collections.abc import Callable, Sequence
 from xml.etree import ElementTree
 
-import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.meshes.mesh_files import find
-from ffsr_plan.robots.urdf_validation import Counts
+from ffsr_plan.meshes.mesh_addresses import find
 
 
-def build_model(text: str, where: str) -> pin.Model:
-    """Build the kinematic model of a URDF, its root link on a free-flyer joint.
-
-    Shapes are removed from the text first, because Pinocchio does not know all of them.
+def build_model(robot: ElementTree.Element, where: str) -> pin.Model:
+    """Build the kinematic model of a robot, its root link on a free-flyer joint.
 
     Args:
-        text: the URDF, checked.
+        robot: the canonical `<robot>` element.
         where: file or robot name that starts every message.
 
     Raises:
         InvalidInput: a URDF that Pinocchio refuses, with Pinocchio's message.
     """
-    root = ElementTree.fromstring(text)
-    for link in root.findall("link"):
-        for shape in [*link.findall("visual"), *link.findall("collision")]:
-            link.remove(shape)
+    text = _with_shapes(robot, lambda _: False)  # Pinocchio does not know all shapes
     try:
-        return pin.buildModelFromXML(
-            ElementTree.tostring(root, encoding="unicode"), pin.JointModelFreeFlyer()
-        )
+        return pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
     except ValueError as error:
         reason = str(error).strip().splitlines()[-1]
         raise InvalidInput(where, reason, "a URDF that Pinocchio can load") from None
 
 
-def visual_model(model: pin.Model, text: str, folders: Sequence[str]) -> pin.GeometryModel:
+def visual_model(
+    model: pin.Model, robot: ElementTree.Element, folders: Sequence[str]
+) -> pin.GeometryModel:
     """Build the model of the visual shapes that Pinocchio can read.
 
     Capsules and missing meshes are left out, because Pinocchio would drop other shapes with them.
 
     Args:
         model: the kinematic model of the same URDF.
-        text: the URDF, checked.
+        robot: the canonical `<robot>` element.
         folders: folders in which mesh addresses are looked up.
 
     Returns:
         The visual shapes; none if Pinocchio refuses them.
     """
-    root = ElementTree.fromstring(text)
-    for link in root.findall("link"):
-        for collision in link.findall("collision"):
-            link.remove(collision)
-        for visual in link.findall("visual"):
-            mesh = visual.find("geometry/mesh")
-            missing = mesh is not None and find(mesh.get("filename", ""), folders) is None
-            if missing or visual.find("geometry/capsule") is not None:
-                link.remove(visual)
-    stripped, kind = ElementTree.tostring(root, encoding="unicode"), pin.GeometryType.VISUAL
+    robot = copy.deepcopy(robot)
+    missing = []
+    for mesh in robot.iterfind("link/visual/geometry/mesh"):
+        path = find(mesh.get("filename", ""), folders)
+        if path is None:
+            missing.append(mesh)
+        else:  # Pinocchio does not look where `find` does
+            mesh.set("filename", str(path.absolute()))
+
+    def readable(shape: ElementTree.Element) -> bool:
+        unknown = shape.find("geometry/capsule") is not None
+        return shape.tag == "visual" and not unknown and shape.find("geometry/mesh") not in missing
+
+    text, kind = _with_shapes(robot, readable), pin.GeometryType.VISUAL
     try:
-        return pin.buildGeomFromUrdfString(model, stripped, kind, package_dirs=list(folders))
+        return pin.buildGeomFromUrdfString(model, text, kind, package_dirs=list(folders))
     except ValueError:
         return pin.GeometryModel()
 
 
-def check_loaded(name: str, model: pin.Model, collision: pin.GeometryModel, counts: Counts) -> None:
-    """Check that Pinocchio has loaded all links and shapes, and that moving bodies have mass.
-
-    Pinocchio drops some links and shapes without an error.
-
-    Args:
-        name: file or robot name that starts every message.
-        model: the kinematic model.
-        collision: the collision shapes.
-        counts: numbers of links and shapes in the URDF.
-
-    Raises:
-        InvalidInput: a link or shape is missing, or a moving body has no mass.
-    """
-    links = sum(frame.type == pin.FrameType.BODY for frame in model.frames)
-    if (links, collision.ngeoms) != counts:
-        raise InvalidInput(
-            name,
-            f"{links} links and {collision.ngeoms} collision shapes after loading",
-            f"all {counts.links} links and {counts.collisions} shapes of the file, in one tree",
-        )
-    base = model.inertias[1]
-    if base.mass <= 0.0 or np.linalg.eigvalsh(base.inertia)[0] <= 0.0:
-        raise InvalidInput(
-            f"{name}, root link", f"mass {base.mass:g} kg", "a mass and a full inertia"
-        )
-    for frame in model.frames:  # a joint's inertia is that of all links fixed to one another
-        if frame.type == pin.FrameType.BODY and model.inertias[frame.parentJoint].mass <= 0.0:
-            allowed = "a mass of the moving link or of a link fixed to it"
-            raise InvalidInput(f"{name}, link '{frame.name}'", "0 kg", allowed)
+def _with_shapes(robot: ElementTree.Element, wanted: Callable[[ElementTree.Element], bool]) -> str:
+    """Text of a robot, of its shapes only those that are wanted."""
+    stripped = ElementTree.Element(robot.tag, robot.attrib)
+    for part in robot:
+        if part.tag != "link":
+            stripped.append(part)
+            continue
+        link = ElementTree.SubElement(stripped, "link", part.attrib)
+        shapes = ("visual", "collision")
+        link.extend(own for own in part if own.tag not in shapes or wanted(own))
+    return ElementTree.tostring(stripped, encoding="unicode")

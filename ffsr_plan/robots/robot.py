@@ -6,45 +6,37 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternion
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, frozen
+from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
-from ffsr_plan.core.read_only_dict import ReadOnlyDict
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
-from ffsr_plan.core.text_files import write_text
+from ffsr_plan.core.text_files import write_files
 from ffsr_plan.robots.collision_shapes import (
     Containers,
     Replacement,
 )
+from ffsr_plan.robots.components import Components
 from ffsr_plan.robots.kinematics import Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import named_postures
+from ffsr_plan.robots.urdf.inertias import Balanced
+from ffsr_plan.robots.urdf.joints import RateLimits
 
-
-class Components(NamedTuple):
-    """Parts of one configuration, or of N.
-
-    Attributes:
-        position: (3,) or (N, 3) base origin in the world [m].
-        attitude: (3,) or (N, 3) ZYX angles alpha, beta, gamma of Eq. 2 [rad].
-        joints: joint values by name [rad, or m where prismatic]: a float each, or (N,).
-    """
-
-    position: Array
-    attitude: Array
-    joints: dict[str, Any]
+_HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
 
 
 @dataclass(frozen=True, eq=False)
 class SpaceRobot:
     """A free-flying robot. Made by `load_robot` or `compose`; everything in it is read-only.
+
+    Two robots are equal if they were made from the same texts, meshes and options.
 
     A configuration `q` is Pinocchio's vector (nq,): base position (3) [m] and quaternion
     (x, y, z, w) of the base in the world, then the joints. `joint values` (nd,) are plain numbers,
@@ -53,7 +45,8 @@ class SpaceRobot:
 
     Attributes:
         name: name of the robot.
-        urdf: the URDF text that the robot was made from.
+        urdf: what was read of the URDF, as a URDF of its own: known elements only, every number
+            with all its digits, orientations as roll, pitch and yaw.
         model: Pinocchio model, the root link on a free-flyer joint.
         collision_model: collision shapes and the pairs checked for self-collision: all pairs except
             those of adjacent links and those that the SRDF exempts.
@@ -65,10 +58,18 @@ class SpaceRobot:
             URDF, before its scale [m]. With these the robot can be made without the mesh files.
         srdf: the SRDF text; empty if there is none.
         disabled_pairs: pairs of links that the SRDF allows to touch, sorted.
+        unchecked_links: links with a mass or a visual shape but no collision shape: nothing keeps
+            them clear of obstacles, and `Plan.verify` does not check them either.
+        balanced: links whose inertia tensor was balanced; see `load_robot`.
+        rate_limits: limits of acceleration and jerk by joint, from URDF 1.2.
         joint_names: (nd) names of the joints.
         lower: (nd,) lower joint limits [rad or m], -inf for continuous joints.
         upper: (nd,) upper joint limits [rad or m], inf for continuous joints.
         prismatic: (nd,) booleans, true where the joint value is in metres.
+        acceleration: (nd,) limits of the joints' acceleration [rad/s^2 or m/s^2], from URDF 1.2,
+            the lesser of its `acceleration` and `deceleration`; inf where the URDF has none.
+        jerk: (nd,) limits of the joints' jerk [rad/s^3 or m/s^3], from URDF 1.2; inf where the URDF
+            has none.
         postures: joint values [rad or m] by joint, by name of the posture, from the group states of
             the SRDF. A posture may list some of the joints only.
     """
@@ -84,10 +85,15 @@ class SpaceRobot:
     meshes: Mapping[str, Array] = field(default_factory=dict)
     srdf: str = ""
     disabled_pairs: tuple[tuple[str, str], ...] = ()
+    unchecked_links: tuple[str, ...] = ()
+    balanced: tuple[Balanced, ...] = ()
+    rate_limits: Mapping[str, RateLimits] = field(default_factory=dict, repr=False)
     joint_names: tuple[str, ...] = field(init=False)
     lower: Array = field(init=False)
     upper: Array = field(init=False)
     prismatic: NDArray[np.bool_] = field(init=False)
+    acceleration: Array = field(init=False)
+    jerk: Array = field(init=False)
     postures: Mapping[str, Mapping[str, float]] = field(init=False)
     _slots: tuple[tuple[int, int], ...] = field(init=False, repr=False)  # index and length in q
 
@@ -100,16 +106,20 @@ class SpaceRobot:
         names = tuple(self.model.names[j] for j in range(2, self.model.njoints))
         prismatic = [j.shortname().startswith("JointModelP") for j in joints]
         limits = dict(zip(names, zip(lower, upper, strict=True), strict=True))
+        rates = [self.rate_limits.get(name, RateLimits(np.inf, np.inf)) for name in names]
+        fixed = [f.name for f in self.model.frames if f.type == pin.FrameType.FIXED_JOINT]
         derived = {
             "joint_names": names,
             "lower": frozen(np.array(lower, dtype=np.float64)),
             "upper": frozen(np.array(upper, dtype=np.float64)),
             "prismatic": frozen(np.array(prismatic, dtype=np.bool_)),
+            "acceleration": frozen(np.array([r.acceleration for r in rates], dtype=np.float64)),
+            "jerk": frozen(np.array([r.jerk for r in rates], dtype=np.float64)),
             "postures": ReadOnlyDict(
                 {
                     name: ReadOnlyDict(values)
                     for name, values in named_postures(
-                        self.srdf, f"{self.name}, SRDF", limits
+                        self.srdf, f"{self.name}, SRDF", limits, fixed
                     ).items()
                 }
             ),
@@ -117,6 +127,19 @@ class SpaceRobot:
         }
         for attribute, value in derived.items():
             object.__setattr__(self, attribute, value)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SpaceRobot):
+            return NotImplemented
+        return self is other or self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.urdf, self.srdf))
+
+    def _content(self) -> object:
+        """All that the robot was made from."""
+        made_from = (self.name, self.urdf, self.srdf, self.package_dirs, self.containers)
+        return content((*made_from, self.meshes))
 
     def __repr__(self) -> str:
         return (
@@ -131,6 +154,8 @@ class SpaceRobot:
             "links": str(len(self.link_names)),
             "postures": ", ".join(self.postures) or "none",
         }
+        if self.unchecked_links:
+            rows["not checked"] = ", ".join(self.unchecked_links)
         return html_table(f"SpaceRobot {self.name}", rows)
 
     @property
@@ -160,8 +185,11 @@ class SpaceRobot:
         return tuple(frame.name for frame in frames if frame.type == pin.FrameType.BODY)
 
     def neutral(self) -> Array:
-        """(nq,) configuration with the base at the world's origin and all joint values zero."""
-        return self.assemble(np.zeros(3), IDENTITY, np.zeros(self.nd))
+        """(nq,) configuration with the base at the world's origin and all joint values zero.
+
+        A joint whose limits exclude zero is at the limit nearest to it.
+        """
+        return self.assemble(np.zeros(3), IDENTITY, self._nearest_to_zero())
 
     def configuration(
         self,
@@ -192,7 +220,7 @@ class SpaceRobot:
         if joints is not None and not isinstance(joints, Mapping):
             allowed = "a mapping from joint names to values, or the name of a posture"
             raise InvalidInput("joints", joints, allowed)
-        values = np.zeros(self.nd)
+        values = self._nearest_to_zero()
         for name, value in (joints or {}).items():
             if name not in self.joint_names:
                 raise unknown_name("joints", name, self.joint_names)
@@ -200,6 +228,10 @@ class SpaceRobot:
         self.check_limits("joints", values)
         quat = from_angles(finite_array("attitude", attitude, (3,)))
         return self.assemble(finite_array("position", position, (3,), FARTHEST), quat, values)
+
+    def _nearest_to_zero(self) -> Array:
+        """(nd,) joint values nearest to zero within the limits [rad or m]."""
+        return np.clip(np.zeros(self.nd), self.lower, self.upper)
 
     def components(self, q: ArrayLike) -> Components:
         """Base position, base attitude and joint values of configurations.
@@ -280,7 +312,8 @@ class SpaceRobot:
     def joint_change(self, begin: Array, end: Array) -> Array:
         """Change of the joint values from one configuration to another.
 
-        A continuous joint takes the shorter direction; a rotation by pi is positive.
+        A continuous joint takes the shorter direction; half a turn is positive, also if rounding
+        makes it 1e-9 rad more or less.
 
         Args:
             begin: (nq,) first configuration.
@@ -291,6 +324,7 @@ class SpaceRobot:
         """
         change = self.joint_values(end) - self.joint_values(begin)
         wrapped = np.pi - np.mod(np.pi - change, 2.0 * np.pi)
+        wrapped = np.where(wrapped < -np.pi + _HALF_TURN_BAND, wrapped + 2.0 * np.pi, wrapped)
         return np.where(np.isinf(self.upper), wrapped, change)
 
     def check_configuration(self, what: str, q: ArrayLike) -> Array:
@@ -301,7 +335,8 @@ class SpaceRobot:
             q: (nq,) configuration.
 
         Returns:
-            (nq,) read-only copy, its quaternion normalised.
+            (nq,) read-only copy; quaternion, and cosine and sine, normalised. What has been
+            checked once is returned bit for bit.
 
         Raises:
             InvalidInput: wrong length, not finite, a quaternion (or cosine and sine of a continuous
@@ -311,23 +346,34 @@ class SpaceRobot:
         finite_array(f"{what} (base position)", checked[:3], (3,), FARTHEST)
         checked[3:7] = unit_quaternion(f"{what} (base quaternion)", checked[3:7])
         for name, (i, nq) in zip(self.joint_names, self._slots, strict=True):
-            if nq == 2 and abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
+            if nq == 1:
+                continue
+            if abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
                 raise InvalidInput(
                     f"{what} (joint {name})", checked[i : i + 2].tolist(), "cosine and sine"
                 )
+            checked[i : i + 2] = normalised(checked[i : i + 2])
         values = self.joint_values(checked)
         self.check_limits(what, values)
         return frozen(checked)
 
     def check_limits(self, what: str, joint_values: Array) -> None:
-        """Raise `InvalidInput` for the first joint value outside its limits."""
-        for k, name in enumerate(self.joint_names):
-            if not self.lower[k] <= joint_values[k] <= self.upper[k]:
-                raise InvalidInput(
-                    f"{what} (joint {name})",
-                    float(joint_values[k]),
-                    f"{self.lower[k]:g} to {self.upper[k]:g}",
-                )
+        """Raise `InvalidInput` that names all joint values outside their limits."""
+        outside = ~((self.lower <= joint_values) & (joint_values <= self.upper))
+        wrong = np.flatnonzero(outside).tolist()
+        if not wrong:
+            return
+        names = [self.joint_names[k] for k in wrong]
+        ranges = [f"{self.lower[k]:g} to {self.upper[k]:g}" for k in wrong]
+        if len(wrong) == 1:
+            raise InvalidInput(
+                f"{what} (joint {names[0]})", float(joint_values[wrong[0]]), ranges[0]
+            )
+        raise InvalidInput(
+            f"{what} (joints {', '.join(names)})",
+            [float(joint_values[k]) for k in wrong],
+            ", ".join(f"{name} {limits}" for name, limits in zip(names, ranges, strict=True)),
+        )
 
     def save(self, path: str | Path) -> None:
         """Write the URDF, and the SRDF if there is one to a `.srdf` file beside it.
@@ -340,12 +386,11 @@ class SpaceRobot:
         Raises:
             InvalidInput: not a `.urdf` path, or one that cannot be written.
         """
-        target = Path(path)
-        if target.suffix != ".urdf":
-            raise InvalidInput("path", str(path), "a path that ends in .urdf")
-        write_text("path", target, self.urdf)
+        target = checked_path("path", path, ".urdf")
+        files: dict[Path, str | bytes] = {target: self.urdf}
         if self.srdf:
-            write_text("path", target.with_suffix(".srdf"), self.srdf)
+            files[target.with_suffix(".srdf")] = self.srdf
+        write_files("path", files)
 
     def link_of(self, geometry: pin.GeometryObject) -> str:
         """Name of the URDF link that a collision or visual shape belongs to."""

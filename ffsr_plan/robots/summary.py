@@ -21,6 +21,7 @@ class RobotSummary(NamedTuple):
         reach_bound: upper bound on the reach of the arms [m]; see `reach_bound`.
         joint_names: names of the joints.
         postures: names of the postures of its SRDF.
+        unchecked_links: see `SpaceRobot.unchecked_links`.
     """
 
     name: str
@@ -28,6 +29,7 @@ class RobotSummary(NamedTuple):
     reach_bound: float
     joint_names: tuple[str, ...]
     postures: tuple[str, ...]
+    unchecked_links: tuple[str, ...]
 
 
 def robot_summaries() -> list[RobotSummary]:
@@ -42,7 +44,14 @@ def summary(robot: SpaceRobot) -> RobotSummary:
         robot: any robot.
     """
     bound = reach_bound(robot)
-    return RobotSummary(robot.name, robot.mass, bound, robot.joint_names, tuple(robot.postures))
+    return RobotSummary(
+        robot.name,
+        robot.mass,
+        bound,
+        robot.joint_names,
+        tuple(robot.postures),
+        robot.unchecked_links,
+    )
 
 
 def reach_bound(robot: SpaceRobot) -> float:

@@ -14,7 +14,8 @@ from ffsr_plan.core.checks import finite_array
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, Numbers, Rule, Text, Vector
 from ffsr_plan.core.settings import Given, setting, settings
-from ffsr_plan.robots.urdf_validation import LARGEST
+from ffsr_plan.robots.urdf.inertias import tensor_fault
+from ffsr_plan.robots.urdf.origins import LARGEST
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Inertia(Rule):
         return _inertia(what, value)  # type: ignore[arg-type]
 
 
-@settings(eq=False, of="a panel")
+@settings(of="a panel")
 class Panel:
     """A solar panel, or anything else box-shaped that is fixed to the bus.
 
@@ -64,7 +65,7 @@ class Panel:
     name: Annotated[str, Text("a name")] = ""
 
 
-@settings(eq=False, of="the bus")
+@settings(of="the bus")
 class Bus:
     """A box about the origin of the bus frame, which is the robot's base frame.
 
@@ -114,8 +115,8 @@ def _inertia(what: str, value: ArrayLike) -> Array:
     tensor = np.diag(checked) if flat else checked
     if not np.array_equal(tensor, tensor.T):
         raise InvalidInput(what, value, "a symmetric matrix")
-    small, middle, large = np.linalg.eigvalsh(tensor)
-    if small <= 0.0 or small + middle < large * (1.0 - 1e-9):
+    moments = tensor[np.triu_indices(3)].tolist()
+    if np.linalg.eigvalsh(tensor)[0] <= 0.0 or tensor_fault(moments, list(map(repr, moments))):
         allowed = "principal moments above 0 kg m^2 of which no two sum to less than the third"
         raise InvalidInput(what, value, allowed)
     return frozen(tensor)

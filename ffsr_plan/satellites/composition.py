@@ -15,21 +15,26 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ffsr_plan.core.arrays import ReadOnlyDict
 from ffsr_plan.core.checks import number, one_of
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, Rule, Text, Vector
+from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, OneOf, Rule, Text, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.meshes.box_cover import boxes_around
 from ffsr_plan.meshes.hull_reduction import beyond
-from ffsr_plan.meshes.mesh_files import find, hull, surface
+from ffsr_plan.meshes.mesh_addresses import find
+from ffsr_plan.meshes.mesh_files import hull, surface
 from ffsr_plan.robots.collision_shapes import origin
-from ffsr_plan.robots.loading import robot_from_urdf
+from ffsr_plan.robots.loading import robot_from_urdf, warn_of_shapeless_links
 from ffsr_plan.robots.robot import SpaceRobot
-from ffsr_plan.robots.urdf_validation import LARGEST, attribute_numbers
+from ffsr_plan.robots.urdf.inertias import INERTIA
+from ffsr_plan.robots.urdf.links import COLLISION
+from ffsr_plan.robots.urdf.number_texts import attribute_numbers, attribute_text
+from ffsr_plan.robots.urdf.origins import LARGEST
 from ffsr_plan.satellites.arms import Arm, load_arm
 from ffsr_plan.satellites.bus import Bus
 from ffsr_plan.satellites.urdf_xml import (
-    attribute_text,
     box_shape,
     bus_elements,
     comment,
@@ -52,12 +57,28 @@ class PathOrName(Rule):
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
         """See `Rule.check`."""
-        if isinstance(value, (str, Path)) or (self.optional and value is None):
+        if value is None and self.optional:
             return value
-        raise InvalidInput(what, value, self.meaning)
+        if not isinstance(value, (str, Path)):
+            raise InvalidInput(what, value, self.meaning)
+        checked_path(what, value)
+        return value
 
 
-@settings(eq=False, of="a mount")
+@dataclass(frozen=True)
+class Paths(Rule):
+    """Paths, kept as texts."""
+
+    meaning: str
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> tuple[str, ...]:
+        """See `Rule.check`."""
+        if isinstance(value, (str, Path)) or not isinstance(value, Sequence):
+            raise InvalidInput(what, value, self.meaning)
+        return tuple(str(checked_path(what, each)) for each in value)
+
+
+@settings(of="a mount")
 class Mount:
     """An arm and its place on the bus.
 
@@ -67,10 +88,15 @@ class Mount:
         attitude: (3,) ZYX angles (alpha, beta, gamma) of that link in the bus frame [rad].
         prefix: put before the names of the arm's links and joints.
         locked: joints of the arm that are fixed, by the arm's own names, at a value [rad, or m
-            where prismatic]; the planner does not move them. If other joints mimic a joint, lock
-            that joint: the others are fixed with it.
+            where prismatic]; the planner does not move them. Of joints that mimic one another,
+            such as two fingers, name one: the others are fixed with it.
         srdf: path to an SRDF of the arm, by whose `<disable_collisions>` links may touch. An arm
             given by its name has its own, if example-robot-data has one.
+        collision: what becomes of links with visual and without collision shapes, as in
+            `load_robot`; by default `visual` for an arm given by its name, `collision` for a file.
+        inertia: `exact` or `balance`, as in `load_robot`.
+        package_dirs: folders in which `package://` and relative mesh addresses are looked up,
+            before the folder of the `.urdf` file; see `load_robot`.
 
     Raises:
         InvalidInput: a value that is not finite, or of another type.
@@ -81,10 +107,15 @@ class Mount:
     attitude: Annotated[Vector, Numbers(3)] = setting(default=(0.0, 0.0, 0.0))
     prefix: Annotated[str, Text("a text, such as 'left_'")] = ""
     locked: Annotated[
-        Given[dict[str, float], Mapping[str, float]],
+        Given[ReadOnlyDict[str, float], Mapping[str, float]],
         NamedNumbers("a mapping from joint names to values"),
     ] = setting(default_factory=dict)
     srdf: Annotated[str | Path | None, PathOrName("a path", optional=True)] = None
+    collision: Annotated[str, OneOf(COLLISION)] | None = None
+    inertia: Annotated[str, OneOf(INERTIA)] = "exact"
+    package_dirs: Annotated[
+        Given[tuple[str, ...], Sequence[str | Path]], Paths("a list of paths")
+    ] = setting(default=())
 
 
 def compose(
@@ -122,7 +153,7 @@ def compose(
     """
     if not isinstance(bus, Bus):
         raise InvalidInput("bus", bus, "a Bus")
-    if not isinstance(name, str) or not name:
+    if not isinstance(name, str) or not name or not name.isprintable():
         raise InvalidInput("name", name, "a name")
     one_of("shapes", shapes, SHAPES)
     if not isinstance(arms, Sequence) or isinstance(arms, str):
@@ -131,9 +162,16 @@ def compose(
         if not isinstance(mount, Mount):
             allowed = "Mounts, such as Mount('ur5', position=(0, 0, 0.5), prefix='left_')"
             raise InvalidInput("arms", mount, allowed)
-    loaded = [load_arm(mount.arm, mount.locked, mount.srdf) for mount in arms]
+    if not isinstance(may_touch, Sequence) or isinstance(may_touch, (str, bytes)):
+        raise InvalidInput("may_touch", may_touch, "pairs of link names")
+    loaded = [
+        load_arm(m.arm, m.locked, m.srdf, m.package_dirs, collision=m.collision, inertia=m.inertia)
+        for m in arms
+    ]
     both = list(zip(loaded, arms, strict=True))
-    return put_together(bus, both, name, shapes, postures or {}, may_touch)
+    robot = put_together(bus, both, name, shapes, {} if postures is None else postures, may_touch)
+    warn_of_shapeless_links(robot)
+    return robot
 
 
 def put_together(
@@ -171,7 +209,8 @@ def put_together(
         pairs += [(mount.prefix + one, mount.prefix + two) for one, two in arm.may_touch]
     ElementTree.indent(robot)
     urdf = ElementTree.tostring(robot, encoding="unicode") + "\n"
-    return robot_from_urdf(urdf, name, srdf=_srdf(name, postures, [*pairs, *may_touch]))
+    srdf = _srdf(name, postures, [*pairs, *may_touch])
+    return robot_from_urdf(urdf, name, srdf=srdf, collision="ignore")  # the arms are checked
 
 
 def _check_names(
@@ -205,16 +244,25 @@ def _renamed(part: ElementTree.Element, arm: Arm, prefix: str, shapes: str) -> E
     massless = ElementTree.fromstring(_NO_INERTIA)
     copy.append(massless if (inertial := part.find("inertial")) is None else inertial)
     if shapes == "meshes":
-        copy.extend(_with_addresses(shape, arm) for shape in part.findall("visual"))
-    for collision in part.findall("collision"):
-        mesh = collision.find("geometry/mesh")
-        if mesh is None:
-            copy.append(_bare(collision))
-        elif shapes == "meshes":
-            copy.append(_with_addresses(_bare(collision), arm))
-        else:
-            copy.extend(_boxes(collision, mesh, arm, str(part.get("name"))))
+        for tag in ("visual", "collision"):
+            copy.extend(_with_addresses(shape, arm) for shape in part.findall(tag))
+        return copy
+    if part.find("collision") is None:  # a link that is not checked remains to be seen
+        copy.extend(_self_contained(part, "visual", arm))
+    copy.extend(_self_contained(part, "collision", arm))
     return copy
+
+
+def _self_contained(link: ElementTree.Element, tag: str, arm: Arm) -> list[ElementTree.Element]:
+    """Copies of a link's shapes, boxes in place of the meshes."""
+    copies: list[ElementTree.Element] = []
+    for shape in link.findall(tag):
+        mesh = shape.find("geometry/mesh")
+        if mesh is None:
+            copies.append(_bare(shape))
+        else:
+            copies.extend(_boxes(shape, mesh, arm, str(link.get("name"))))
+    return copies
 
 
 def _bare(shape: ElementTree.Element) -> ElementTree.Element:
@@ -235,10 +283,10 @@ def _with_addresses(shape: ElementTree.Element, arm: Arm) -> ElementTree.Element
 
 
 def _boxes(
-    collision: ElementTree.Element, mesh: ElementTree.Element, arm: Arm, link: str
+    shape: ElementTree.Element, mesh: ElementTree.Element, arm: Arm, link: str
 ) -> list[ElementTree.Element]:
-    """Boxes that replace a collision mesh, after a comment that names the mesh."""
-    where, address = f"{arm.where}, link '{link}', collision mesh", str(mesh.get("filename"))
+    """Boxes that replace a mesh, after a comment that names the mesh."""
+    where, address = f"{arm.where}, link '{link}', {shape.tag} mesh", str(mesh.get("filename"))
     scale = attribute_numbers(mesh, "scale", "1 1 1")
     triangles = surface(address, arm.folders, where) * scale
     boxes = boxes_around(triangles)
@@ -246,15 +294,15 @@ def _boxes(
     ends = np.array([[box.low, box.high] for box in boxes])
     points = [list(product(*pair.T)) for pair in ends]
     excess = max(0.0, float(beyond(corners, np.concatenate(points)).max()))
-    frame, rpy = origin(collision), "0 0 0"
-    if (element := collision.find("origin")) is not None:
+    frame, rpy = origin(shape), "0 0 0"
+    if (element := shape.find("origin")) is not None:
         rpy = element.get("rpy", rpy)
     count = "a box" if len(boxes) == 1 else f"{len(boxes)} boxes"
     about = f"{count} around {Path(address).name}, at most {1e3 * excess:.1f} mm beyond its hull"
     elements = [comment(about)]
     for low, high in ends:
         center = frame.act(0.5 * (low + high)).round(12)
-        elements.append(box_shape("collision", (high - low).round(7), center, rpy))
+        elements.append(box_shape(shape.tag, (high - low).round(7), center, rpy))
     return elements
 
 
@@ -275,7 +323,11 @@ def _srdf(
             checked = number(f"postures['{posture}'], '{joint}'", value)
             ElementTree.SubElement(state, "joint", name=str(joint), value=attribute_text(checked))
     for pair in may_touch:
-        if len(pair) != 2 or not all(isinstance(link, str) for link in pair):
+        if (
+            not isinstance(pair, Sequence)
+            or len(pair) != 2
+            or not all(isinstance(link, str) for link in pair)
+        ):
             raise InvalidInput("may_touch", pair, "pairs of link names")
         ElementTree.SubElement(root, "disable_collisions", link1=pair[0], link2=pair[1])
     if not len(root):

@@ -8,12 +8,13 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.robots.urdf.number_texts import attribute_text
 from ffsr_plan.satellites.bus import Bus, box_inertia
 
 BUS_LINK = "bus"
 """Name of the root link."""
 GOLD = "0.86 0.64 0.22 1"
-NAVY = "0.10 0.16 0.36 1"
+NAVY = "0.1 0.16 0.36 1"
 
 
 def bus_elements(bus: Bus) -> list[ElementTree.Element]:
@@ -111,16 +112,6 @@ def inertial(mass: float, inertia: ArrayLike, center: ArrayLike) -> ElementTree.
     attributes = {key: attribute_text(value) for key, value in moments.items()}
     ElementTree.SubElement(element, "inertia", attributes)
     return element
-
-
-def attribute_text(numbers: ArrayLike) -> str:
-    """Numbers as a URDF attribute, with all digits that tell a double from its neighbours.
-
-    Args:
-        numbers: any shape.
-    """
-    words = (repr(float(n)) for n in np.asarray(numbers, dtype=np.float64).ravel())
-    return " ".join(word.removesuffix(".0") for word in words)
 
 
 def comment(text: str) -> ElementTree.Element:

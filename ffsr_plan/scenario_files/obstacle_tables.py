@@ -8,15 +8,23 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.setting_rules import ByKey, Number, Numbers, Text, Truth, Vector, WholeNumber
+from ffsr_plan.core.setting_rules import (
+    ByKey,
+    FilePath,
+    Number,
+    Numbers,
+    Truth,
+    Vector,
+    WholeNumber,
+)
 from ffsr_plan.core.settings import settings
 from ffsr_plan.scene import generators
 from ffsr_plan.scene.scene import Scene
 
-FilePath = Annotated[str, Text("a path")]
+FileName = Annotated[str, FilePath()]
 
 
-@settings(eq=False)
+@settings
 class Sphere:
     """The table `[[obstacles]]` of a sphere.
 
@@ -41,7 +49,7 @@ class CsvFile:
         csv: path of a table of x, y, z and radius [m], relative to the scenario file.
     """
 
-    csv: FilePath
+    csv: FileName
 
     def scene(self, folder: Path) -> Scene:
         """The spheres of the file; its path is relative to `folder`."""
@@ -57,14 +65,14 @@ class NumpyFile:
             the scenario file.
     """
 
-    numpy: FilePath
+    numpy: FileName
 
     def scene(self, folder: Path) -> Scene:
         """The spheres of the file; its path is relative to `folder`."""
         return Scene.from_numpy(folder / self.numpy)
 
 
-@settings(eq=False)
+@settings
 class MeshFile:
     """The table `[[obstacles]]` of a mesh, which spheres cover; see `Scene.from_mesh`.
 
@@ -77,7 +85,7 @@ class MeshFile:
         inside: false to cover only the surface of the mesh.
     """
 
-    mesh: FilePath
+    mesh: FileName
     excess: Annotated[float, Number(above=0.0)]
     scale: Annotated[float, Number(above=0.0)] | None = None
     position: Annotated[Array, Numbers(3)] | None = None
@@ -96,7 +104,7 @@ Obstacle = Annotated[
 ]
 
 
-@settings(eq=False)
+@settings
 class CloudTable:
     """The table `[[clouds]]`: spheres drawn from a seed; see `generators.cloud`.
 
@@ -121,7 +129,7 @@ class CloudTable:
         return generators.cloud(**_given(self) | {"spared": [(end, self.spared) for end in ends]})
 
 
-@settings(eq=False)
+@settings
 class BeltTable:
     """The table `[[belts]]`: debris in a ring, drawn from a seed; see `generators.belt`.
 
@@ -152,7 +160,7 @@ class BeltTable:
         return generators.belt(**_given(self) | {"spared": [(end, self.spared) for end in ends]})
 
 
-@settings(eq=False)
+@settings
 class ScatterTable:
     """The table `[[scatters]]`: a few spheres in the xy-plane; see `generators.scatter`.
 
@@ -175,7 +183,7 @@ class ScatterTable:
         return generators.scatter(**_given(self))
 
 
-@settings(eq=False)
+@settings
 class TrussTable:
     """The table `[[trusses]]`: a boom of struts; see `generators.truss`.
 

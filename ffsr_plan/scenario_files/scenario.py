@@ -10,8 +10,10 @@ from pathlib import Path
 
 from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.settings import from_mapping
+from ffsr_plan.core.text_files import read_text
 from ffsr_plan.plans.planner_registry import Planner
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.scenario_files.scenario_schema import ScenarioFile
@@ -53,23 +55,21 @@ class Scenario:
             source: path of a TOML file, or name of a bundled scenario ("fig2a").
 
         Raises:
-            InvalidInput: no such file, not TOML, an unknown key (the nearest one is suggested), a
-                wrong type or a value that is not allowed; the message names file and field.
+            InvalidInput: no such file, not TOML (with line and column), an unknown key (the nearest
+                one is suggested), a wrong type or a value that is not allowed; the message names
+                file and field.
             PoseOutOfReach, GoalInCollision: no goal configuration for the pose of an end effector.
         """
-        if not isinstance(source, (str, Path)):
-            raise InvalidInput("scenario", source, "a name or a path")
-        path = bundled_files.find("scenarios", str(source), ".toml") or Path(source)
+        path = _find(source)
         what = f"scenario '{source}'"
         try:
-            data = tomllib.loads(path.read_text(encoding="utf-8"))
-        except tomllib.TOMLDecodeError as error:
-            raise InvalidInput(what, str(error), "a TOML file") from None
-        except (OSError, ValueError) as error:
-            known = ", ".join(bundled_files.names("scenarios", ".toml"))
-            raise InvalidInput(
-                what, type(error).__name__, f"a readable file, or one of: {known}"
-            ) from None
+            data = tomllib.loads(read_text(what, path, "utf-8-sig"))
+        except InvalidInput:
+            raise
+        except (RecursionError, ValueError) as error:  # a TOMLDecodeError is a ValueError
+            deep = isinstance(error, RecursionError)
+            reason = "lists or tables nested too deeply" if deep else str(error)
+            raise InvalidInput(what, reason, "a TOML file") from None
         try:
             return _scenario(from_mapping(ScenarioFile, data), path.parent)
         except InvalidInput as error:
@@ -82,6 +82,20 @@ class Scenario:
             f"Scenario({self.title!r}, {self.problem!r}, planner={planner}, seed={self.seed}, "
             f"refine={self.refine})"
         )
+
+
+def _find(source: object) -> Path:
+    """The file of a bundled name or a path.
+
+    Raises:
+        InvalidInput: neither; the nearest bundled name is suggested.
+    """
+    path = checked_path("scenario", source)
+    bundled = bundled_files.find("scenarios", str(source), ".toml")
+    if bundled is None and not path.suffix and not path.exists():
+        known = bundled_files.names("scenarios", ".toml")
+        raise unknown_name("scenario", str(source), [*known, "or a path to a .toml file"])
+    return bundled or path
 
 
 def load_scenario(source: str | Path) -> Problem:
@@ -152,11 +166,12 @@ def _scene(file: ScenarioFile, folder: Path, ends: Sequence[Array]) -> Scene:
     scene = Scene()
     for k, obstacle in enumerate(file.obstacles):
         with _in_table(f"obstacles.{k}"):
-            scene += obstacle.scene(folder)
+            made = obstacle.scene(folder)
+            scene += made if made.sources else made.named(f"obstacles.{k}")
     for name in GENERATORS:
         for k, table in enumerate(getattr(file, name)):
             with _in_table(f"{name}.{k}"):
-                scene += table.scene(ends)
+                scene += table.scene(ends).named(f"{name}.{k}")
     return scene
 
 

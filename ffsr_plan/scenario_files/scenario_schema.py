@@ -21,10 +21,12 @@ from ffsr_plan.problem.problem import ModeName, Problem
 from ffsr_plan.robots.collision_shapes import CONTAINERS
 from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.urdf.inertias import INERTIA
+from ffsr_plan.robots.urdf.links import COLLISION
 from ffsr_plan.scenario_files.obstacle_tables import (
     BeltTable,
     CloudTable,
-    FilePath,
+    FileName,
     GateTable,
     Obstacle,
     ScatterTable,
@@ -51,14 +53,20 @@ class RobotTable:
         srdf: path of an SRDF, relative to the scenario file.
         meshes: what replaces collision meshes.
         cylinders: what replaces collision cylinders.
+        collision: what becomes of links with visual and without collision shapes.
+        inertia: what becomes of inertia tensors that no body has.
+        locked: joints that are fixed, at a value [rad or m]; of joints that mimic one another, one.
     """
 
     urdf: Annotated[str, Text("a name or a path", empty=False)]
     mode: Annotated[Mode, ModeName()] = Mode.FREE_FLYING
-    package_dirs: tuple[FilePath, ...] = ()
-    srdf: FilePath | None = None
+    package_dirs: tuple[FileName, ...] = ()
+    srdf: FileName | None = None
     meshes: Container = "hull"
     cylinders: Container = "hull"
+    collision: Annotated[str, OneOf(COLLISION)] = "collision"
+    inertia: Annotated[str, OneOf(INERTIA)] = "exact"
+    locked: JointValues = field(default_factory=dict)
 
     def robot(self, folder: Path) -> SpaceRobot:
         """The robot; paths are relative to `folder`."""
@@ -68,10 +76,13 @@ class RobotTable:
             srdf=None if self.srdf is None else folder / self.srdf,
             meshes=self.meshes,
             cylinders=self.cylinders,
+            collision=self.collision,
+            inertia=self.inertia,
+            locked=self.locked,
         )
 
 
-@settings(eq=False)
+@settings
 class StartTable:
     """The table `[start]`.
 
@@ -80,7 +91,7 @@ class StartTable:
         attitude: (3,) ZYX angles alpha, beta, gamma [rad].
         posture: name of a posture of the robot, whose joint values are taken.
         joints: joint values by name [rad or m], in place of those of the posture; joints that
-            neither names are at zero.
+            neither names are at zero, or at the limit nearest to it.
     """
 
     position: Position = setting(default=_ORIGIN)
@@ -94,7 +105,7 @@ class StartTable:
         return robot.configuration(self.position, self.attitude, joints)
 
 
-@settings(eq=False)
+@settings
 class EndEffectorTable:
     """The table `end_effector` of `[goal]`.
 
@@ -111,7 +122,7 @@ class EndEffectorTable:
     seed: Annotated[int, WholeNumber()] = 0
 
 
-@settings(eq=False)
+@settings
 class GoalTable:
     """The table `[goal]`.
 
@@ -122,7 +133,7 @@ class GoalTable:
             to bring the base to it.
         posture: name of a posture of the robot, whose joint values are taken.
         joints: joint values by name [rad or m], in place of those of the posture; joints that
-            neither names are at zero.
+            neither names are at zero, or at the limit nearest to it.
         end_effector: pose of a frame, from which the joint values follow by inverse kinematics.
     """
 
@@ -194,7 +205,7 @@ else:
     )
 
 
-@settings(eq=False)
+@settings
 class ScenarioFile:
     """A scenario file.
 

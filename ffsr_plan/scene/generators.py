@@ -135,7 +135,8 @@ def scatter(
     small, large = _radii("scatter", radii)
     count = int(rng.integers(fewest, most + 1))
     x, y = (rng.uniform(first[k], last[k], count) for k in range(2))
-    return Scene(np.stack([x, y, np.zeros(count)], axis=1), rng.uniform(small, large, count))
+    centers = np.stack([x, y, np.zeros(count)], axis=1)
+    return Scene(centers, rng.uniform(small, large, count)).named("scatter")
 
 
 def truss(
@@ -163,7 +164,7 @@ def truss(
     length = float(np.linalg.norm(last - first))
     if length < 1e-6:
         raise InvalidInput("truss end", last.tolist(), "a place apart from its beginning")
-    edge = number("truss width", width, above=0.0)
+    edge = number("truss width", width, above=0.0, at_most=FARTHEST)
     count = whole_number("truss bays", bays, at_least=1, at_most=10_000)
     size = number("truss radius", radius, above=0.0, at_most=0.5 * edge)
     along = (last - first) / length
@@ -189,7 +190,7 @@ def truss(
         steps = int(np.ceil(np.linalg.norm(tip - tail) / size))
         centers.append(tail + np.arange(1, steps)[:, None] / steps * (tip - tail))
     whole = np.vstack(centers)
-    return Scene(whole, np.full(len(whole), size))
+    return Scene(whole, np.full(len(whole), size)).named("truss")
 
 
 def gate(along: float, aside: float, opening: float, radius: float) -> Scene:
@@ -207,7 +208,8 @@ def gate(along: float, aside: float, opening: float, radius: float) -> Scene:
     x, y = number("gate along", along), number("gate aside", aside)
     half = 0.5 * number("gate opening", opening, above=0.0)
     size = number("gate radius", radius, above=0.0)
-    return Scene([[x, y + half + size, 0.0], [x, y - half - size, 0.0]], [size, size])
+    centers = [[x, y + half + size, 0.0], [x, y - half - size, 0.0]]
+    return Scene(centers, [size, size]).named("gate")
 
 
 def _drawn(
@@ -222,13 +224,7 @@ def _drawn(
     rng = np.random.default_rng(whole_number(f"{what} seed", seed, at_least=0))
     count = whole_number(f"{what} count", count, at_least=0, at_most=_MOST_SPHERES)
     small, large = _radii(what, radii)
-    balls = [
-        (
-            finite_array(f"{what} spared", center, (3,)),
-            number(f"{what} spared", ball_radius, at_least=0.0),
-        )
-        for center, ball_radius in spared
-    ]
+    balls = _balls(f"{what} spared", spared)
     centers, sizes = np.zeros((0, 3)), np.zeros(0)
     for _ in range(_ATTEMPTS):
         more = count - len(sizes)
@@ -239,9 +235,22 @@ def _drawn(
             outside &= np.linalg.norm(drawn - center, axis=1) > ball_radius + radius
         centers, sizes = np.vstack([centers, drawn[outside]]), np.append(sizes, radius[outside])
         if len(sizes) == count:
-            return Scene(centers, sizes)
+            return Scene(centers, sizes).named(what)
     text = "; ".join(f"{r:g} m about ({x:g}, {y:g}, {z:g})" for (x, y, z), r in balls)
     raise InvalidInput(f"{what} spared", text, f"balls that leave room for the {what}")
+
+
+def _balls(what: str, spared: Spared) -> list[tuple[Array, float]]:
+    """Centres (3,) [m] and radii [m], checked."""
+    pairs = isinstance(spared, (list, tuple)) and all(
+        isinstance(ball, (list, tuple)) and len(ball) == 2 for ball in spared
+    )
+    if not pairs:
+        raise InvalidInput(what, spared, "pairs of a centre and a radius")
+    return [
+        (finite_array(what, center, (3,), FARTHEST), number(what, radius, at_least=0.0))
+        for center, radius in spared
+    ]
 
 
 def _radii(what: str, radii: ArrayLike) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -11,8 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, truth
+from ffsr_plan.core.arrays import Array, content
+from ffsr_plan.core.checks import FARTHEST, finite_array, number, truth, whole_number
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.meshes import mesh_files
@@ -20,35 +23,50 @@ from ffsr_plan.meshes.sphere_cover import cover
 from ffsr_plan.scene import sphere_files
 from ffsr_plan.scene.sphere_tree import SphereTree, sphere_tree
 
+_LARGEST_SCALE = 1e9  # [m] per unit of a mesh
+
 
 @dataclass(frozen=True, eq=False, init=False)
 class Scene:
     """Sphere obstacles. `scene + other` holds the spheres of both, those of `scene` first.
+
+    Two scenes are equal if they hold the same spheres in the same order.
 
     Attributes:
         centers: (N, 3) centres in the world [m].
         radii: (N,) radii [m], greater than zero.
         excess: greatest distance by which the spheres protrude from the bodies that they cover [m];
             zero if the spheres are the obstacles themselves.
+        sources: what the spheres come from, in their order: pairs of a name, such as that of a
+            mesh file, and a number of spheres. Errors name obstacles by them. Empty if unknown.
     """
 
     centers: Array
     radii: Array
     excess: float = 0.0
+    sources: tuple[tuple[str, int], ...] = ()
 
-    def __init__(self, centers: ArrayLike = (), radii: ArrayLike = (), excess: float = 0.0) -> None:
+    def __init__(
+        self,
+        centers: ArrayLike = (),
+        radii: ArrayLike = (),
+        excess: float = 0.0,
+        sources: Sequence[tuple[str, int]] = (),
+    ) -> None:
         """Check the obstacles and make them read-only; N = 0 is an empty scene.
 
         Args:
             centers: (N, 3) centres in the world [m].
             radii: (N,) radii [m].
             excess: see the class.
+            sources: see the class; the numbers sum to N.
 
         Raises:
             InvalidInput: shapes that do not fit, not finite, or a radius <= 0, with its index.
         """
-        if np.size(centers) == 0:  # accept [] for "no obstacle"
-            centers = np.zeros((0, 3))
+        check_memory(
+            "scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
+        )
         c = finite_array("scene centers", centers, (-1, 3), FARTHEST)
         r = finite_array("scene radii", radii, (-1,))
         if len(c) != len(r):
@@ -60,6 +78,7 @@ class Scene:
         object.__setattr__(self, "centers", c)
         object.__setattr__(self, "radii", r)
         object.__setattr__(self, "excess", number("scene excess", excess, at_least=0.0))
+        object.__setattr__(self, "sources", _checked_sources(sources, len(r)))
 
     @classmethod
     def from_csv(cls, path: str | Path) -> Scene:
@@ -72,7 +91,7 @@ class Scene:
         Raises:
             InvalidInput: names file, line, column and value.
         """
-        return cls(*sphere_files.read_csv(path))
+        return cls(*sphere_files.read_csv(path)).named(Path(path).name)
 
     @classmethod
     def from_numpy(cls, path: str | Path) -> Scene:
@@ -85,7 +104,7 @@ class Scene:
         Raises:
             InvalidInput: names the file, its content and what is allowed.
         """
-        return cls(*sphere_files.read_numpy(path))
+        return cls(*sphere_files.read_numpy(path)).named(Path(path).name)
 
     @classmethod
     def from_mesh(
@@ -121,8 +140,11 @@ class Scene:
         Raises:
             InvalidInput: a mesh that cannot be read, is not closed, or is too large for the excess.
         """
+        where = "mesh"
         if isinstance(mesh, (str, Path)):
-            corners = mesh_files.surface(str(Path(mesh).absolute()), [], "mesh")
+            file = checked_path("mesh", mesh)
+            where = f"mesh {mesh}"
+            corners = mesh_files.surface(str(file.absolute()), [], "mesh")
         elif hasattr(mesh, "triangles"):
             corners = finite_array("mesh, triangles", mesh.triangles, (-1, 3, 3))
         else:
@@ -130,11 +152,35 @@ class Scene:
         if len(corners) == 0:
             raise InvalidInput("mesh", "no triangle", "a mesh with triangles")
         axes = rotations.matrix(rotations.from_angles(finite_array("attitude", attitude, (3,))))
-        triangles = number("scale", scale, above=0.0) * corners @ axes.T
-        triangles = triangles + finite_array("position", position, (3,), FARTHEST)
-        excess = number("mesh, excess", excess, above=0.0)
-        spheres = cover(triangles, excess, truth("inside", inside))
-        return cls(spheres.centers, spheres.radii, excess)
+        factor = number("scale", scale, above=0.0, at_most=_LARGEST_SCALE)
+        triangles = factor * corners @ axes.T + finite_array("position", position, (3,), FARTHEST)
+        finite_array("mesh, corners in the world", triangles, (-1, 3, 3), FARTHEST)
+        excess = number(f"{where}, excess", excess, above=0.0, at_most=FARTHEST)
+        spheres = cover(triangles, excess, truth("inside", inside), where)
+        name = Path(mesh).name if isinstance(mesh, (str, Path)) else "mesh"
+        return cls(spheres.centers, spheres.radii, excess).named(name)
+
+    def named(self, source: str) -> Scene:
+        """The same spheres, by which errors name this source.
+
+        Args:
+            source: such as the name of a part.
+        """
+        sources = [(source, len(self))] if len(self) else []
+        return Scene(self.centers, self.radii, self.excess, sources)
+
+    def source_of(self, sphere: int) -> str:
+        """What a sphere comes from; empty if that is unknown.
+
+        Args:
+            sphere: its index.
+        """
+        end = 0
+        for name, count in self.sources:
+            end += count
+            if sphere < end:
+                return name
+        return ""
 
     def to_csv(self, path: str | Path) -> None:
         """Write a table that `from_csv` reads again bit for bit; `excess` is not written.
@@ -159,7 +205,22 @@ class Scene:
             np.vstack([self.centers, other.centers]),
             np.concatenate([self.radii, other.radii]),
             max(self.excess, other.excess),
+            (*self._all_sources(), *other._all_sources()),
         )
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> object:
+        return content((self.centers, self.radii, self.excess, self.sources))
+
+    def _all_sources(self) -> tuple[tuple[str, int], ...]:
+        return self.sources or ((("", len(self)),) if len(self) else ())
 
     def __repr__(self) -> str:
         extent = f", {self._extent()}" if len(self) else ""
@@ -179,3 +240,31 @@ class Scene:
 
     def __len__(self) -> int:
         return len(self.radii)
+
+
+def _rows(values: object) -> int:
+    rows = isinstance(values, (list, tuple)) or (isinstance(values, np.ndarray) and values.ndim)
+    return len(values) if rows else 0  # type: ignore[arg-type]
+
+
+def _checked_sources(
+    sources: Sequence[tuple[str, int]], spheres: int
+) -> tuple[tuple[str, int], ...]:
+    """The sources, neighbours of one name together; nothing if no sphere has a name."""
+    merged: list[tuple[str, int]] = []
+    try:
+        pairs = [(name, count) for name, count in sources]
+    except (TypeError, ValueError):
+        raise InvalidInput("scene sources", sources, "pairs of a name and a number") from None
+    for name, count in pairs:
+        if not isinstance(name, str):
+            raise InvalidInput("scene sources", name, "a name and a number of spheres")
+        whole_number("scene sources", count, at_least=0)
+        if merged and merged[-1][0] == name == "":
+            merged[-1] = name, merged[-1][1] + count
+        elif count:
+            merged.append((name, count))
+    total = sum(count for _, count in merged)
+    if merged and total != spheres:
+        raise InvalidInput("scene sources", f"{total} spheres", f"all {spheres} of the scene")
+    return tuple(merged) if any(name for name, _ in merged) else ()

@@ -9,17 +9,26 @@ from __future__ import annotations
 import csv
 import math
 import re
+import zipfile
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.text_files import read_text, write_text
 
 COLUMNS = ("x", "y", "z", "radius")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3}
 """Metres in each unit that a header may contain."""
+BYTES_PER_SPHERE = 800
+"""Memory [bytes] that a sphere takes at most while its file is read and its tree is built."""
+_LONGEST_LINE = 10_000
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_LONGEST_HEADER = 100
 _HEADER = re.compile(r"\s*(\w+)\s*(?:\[\s*(\w+)\s*\])?\s*")
 
 
@@ -39,9 +48,16 @@ def read_csv(path: str | Path) -> tuple[Array, Array]:
         InvalidInput: names file, line, column and value.
     """
     what = f"CSV file '{path}'"
-    _check_path(path)
-    text = read_text(what, Path(path), "utf-8-sig")
-    numbered = enumerate(csv.reader(text.splitlines()), start=1)
+    lines = read_text(what, checked_path("path", path), "utf-8-sig").splitlines()
+    for line, text in enumerate(lines, start=1):
+        if len(text) > _LONGEST_LINE:
+            allowed = f"at most {_LONGEST_LINE} characters"
+            raise InvalidInput(f"{what}, line {line}", f"{len(text)} characters", allowed)
+    check_memory(what, {"lines": len(lines)}, BYTES_PER_SPHERE, "fewer spheres")
+    try:
+        numbered = list(enumerate(csv.reader(lines), start=1))
+    except csv.Error as error:
+        raise InvalidInput(what, str(error), "a comma-separated table") from None
     rows = [(line, row) for line, row in numbered if row and not row[0].lstrip().startswith("#")]
     rows = [(line, row) for line, row in rows if any(cell.strip() for cell in row)]
     if not rows:
@@ -70,10 +86,11 @@ def write_csv(path: str | Path, centers: Array, radii: Array) -> None:
     Raises:
         InvalidInput: a path that cannot be written.
     """
+    target = checked_path("path", path)
     rows = np.column_stack([centers, radii]).tolist()
     lines = [",".join(f"{name} [m]" for name in COLUMNS)]
     lines += [",".join(map(repr, row)) for row in rows]
-    write_text("path", Path(path), "\n".join(lines) + "\n")
+    write_text("path", target, "\n".join(lines) + "\n")
 
 
 def read_numpy(path: str | Path) -> tuple[Array, Array]:
@@ -90,39 +107,59 @@ def read_numpy(path: str | Path) -> tuple[Array, Array]:
         InvalidInput: names the file, its content and what is allowed.
     """
     what = f"NumPy file '{path}'"
-    _check_path(path)
-    suffix = Path(path).suffix
-    if suffix not in (".npy", ".npz"):
-        raise InvalidInput(what, suffix, ".npy or .npz")
+    file = checked_path("path", path, ".npy", ".npz")
     try:
-        content = np.load(path, allow_pickle=False)
-        arrays = {"": content} if suffix == ".npy" else dict(content)
+        if file.suffix == ".npy":
+            table = _array(what, file.open("rb"), "spheres")
+        else:
+            centers, radii = _members(what, file)
+    except InvalidInput:
+        raise
     except Exception as error:  # NumPy raises many types for a file of arbitrary content
         raise InvalidInput(what, type(error).__name__, f"a file of numbers ({error})") from None
-    kinds = {array.dtype.kind for array in arrays.values()}
-    if not kinds <= set("iuf"):
-        raise InvalidInput(what, f"kinds of numbers {sorted(kinds)}", "real numbers")
-    if suffix == ".npz":
-        for name in ("centers", "radii"):
-            if name not in arrays:
-                raise InvalidInput(what, ", ".join(arrays) or "nothing", "arrays centers and radii")
-        return arrays["centers"], arrays["radii"]
-    table = arrays[""]
+    if file.suffix == ".npz":
+        return centers, radii
     if table.ndim != 2 or table.shape[1] != len(COLUMNS):
         raise InvalidInput(what, f"shape {table.shape}", "shape (N, 4): x, y, z, radius")
     return table[:, :3], table[:, 3]
 
 
-def _check_path(path: object) -> None:
-    if not isinstance(path, (str, Path)):
-        raise InvalidInput("path", path, "a path")
+def _members(what: str, file: Path) -> tuple[Array, Array]:
+    """The arrays centers and radii of an archive; others are not read."""
+    with zipfile.ZipFile(file) as archive:
+        names = [name.removesuffix(".npy") for name in archive.namelist()]
+        for name in ("centers", "radii"):
+            if name not in names:
+                raise InvalidInput(what, ", ".join(names) or "nothing", "arrays centers and radii")
+        centers, radii = (
+            _array(f"{what}, {name}", archive.open(f"{name}.npy"), "values")
+            for name in ("centers", "radii")
+        )
+    return centers, radii
+
+
+def _array(what: str, file: IO[bytes], counted: str) -> Array:
+    """An array whose size its header states, before any of it is read."""
+    with file:
+        version = np.lib.format.read_magic(file)
+        read = np.lib.format.read_array_header_1_0
+        if version != (1, 0):
+            read = np.lib.format.read_array_header_2_0
+        shape, in_columns, kind = read(file)
+        if kind.kind not in "iuf":
+            raise InvalidInput(what, f"numbers of the kind {kind.name}", "real numbers")
+        count = math.prod(shape)
+        check_memory(what, {counted: count}, BYTES_PER_SPHERE // 4, "fewer spheres")
+        content = file.read(count * kind.itemsize)
+    array = np.frombuffer(content, kind).reshape(shape, order="F" if in_columns else "C")
+    return array.astype(np.float64)
 
 
 def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:
     """Position of each of `COLUMNS` in the table, and the metres in its unit."""
     names, units = [], []
     for cell in cells:
-        match = _HEADER.fullmatch(cell)
+        match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_HEADER else None
         name = match.group(1) if match else cell
         if name not in COLUMNS:
             raise unknown_name(f"{what}, header", cell, COLUMNS)
@@ -142,10 +179,7 @@ def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:
 
 def _number(what: str, column: str, text: str) -> float:
     allowed = "a finite number" + (" greater than 0" if column == "radius" else "")
-    try:
-        value = float(text)
-    except ValueError:
-        raise InvalidInput(what, text, allowed) from None
+    value = float(text) if _NUMBER.fullmatch(text) else math.nan
     if not math.isfinite(value) or (column == "radius" and value <= 0.0):
         raise InvalidInput(what, text, allowed)
     return value

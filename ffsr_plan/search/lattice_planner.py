@@ -10,6 +10,7 @@ import numpy as np
 from ffsr_plan.core.arrays import frozen
 from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate, Counts
+from ffsr_plan.lattice.memory_estimate import check_lattice
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.problem.problem import Problem
@@ -24,10 +25,12 @@ class LatticePlanner(ABC):
     Attributes:
         name: the planner's name in scenario and plan files.
         exact: whether the search returns the lattice optimum.
+        bytes_per_edge: memory of the search for each edge of the lattice [bytes].
     """
 
     name: ClassVar[str]
     exact: ClassVar[bool] = False
+    bytes_per_edge: ClassVar[float]
 
     @abstractmethod
     def search(
@@ -71,8 +74,12 @@ class LatticePlanner(ABC):
             WorkerDied: a worker process ended without a result.
         """
         self.refuse(problem)
+        check_lattice(problem, self.bytes_per_edge, getattr(self, "ants", 0))
         roadmap = Roadmap(problem)
-        if request.colonies == 1:
+        if self.exact:  # it has no path before it ends
+            result, counts = self.search(roadmap, rng), roadmap.counts()
+            request.begin()
+        elif request.colonies == 1:
             result = self.search(roadmap, rng, request.monitor())
             counts = roadmap.counts()
         else:
@@ -83,7 +90,9 @@ class LatticePlanner(ABC):
         offsets, clearances = lattice.offsets[result.path], roadmap.path_clearances(result.path)
         length = roadmap.path_length(result.path)
         if request.refine is not False:
-            refined = refined_path(lattice, prover, offsets, clearances, roadmap.nodes)
+            refined = refined_path(
+                lattice, prover, offsets, clearances, roadmap.nodes, request.stop_requested
+            )
             if refined is not None:
                 offsets, clearances, length, objective, spent = refined
                 counts = counts.plus(spent)
@@ -113,13 +122,7 @@ class LatticePlanner(ABC):
         if request.workers == 1:
             outcomes = _run_colonies(roadmap, self, rngs, request.monitor())
         else:
-            outcomes = run_on_workers(
-                _colonies_of_worker,
-                (roadmap.problem, self),
-                rngs,
-                request.workers,
-                request.time_limit,
-            )
+            outcomes = run_on_workers(_colonies_of_worker, (roadmap.problem, self), rngs, request)
         result = _best(roadmap, outcomes)
         return result, Counts(
             edges_free=sum(o.edges_free for o in outcomes),
@@ -165,7 +168,7 @@ def _run_colonies(
             result = error
         counts, queries = own.counts(), roadmap.prover.queries - before
         outcomes.append(_Outcome(result, counts.edges_free, counts.edges_refused, queries))
-        if isinstance(result, SearchResult) and result.interrupted and not monitor.past_deadline():
+        if monitor.stop_requested():
             break  # by Ctrl-C: no more colonies
     return outcomes
 

@@ -24,6 +24,7 @@ class LatticeOptimum(LatticePlanner):
 
     name: ClassVar[str] = "lattice-optimum"
     exact: ClassVar[bool] = True
+    bytes_per_edge: ClassVar[float] = 2.0
 
     def search(
         self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None

@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.arrays import Array, IntArray, equal_by_content, frozen
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 
 
+@equal_by_content
 class Cycle(NamedTuple):
     """The state of a colony after one cycle, as callbacks receive it.
 
@@ -53,7 +54,7 @@ class SearchMonitor(NamedTuple):
     Attributes:
         on_cycle: called after each cycle, or None.
         deadline: when to stop, by `time.monotonic()`.
-        stop_requested: asked between cycles; whether the search is to end with what it has.
+        stop_requested: asked often; whether the search is to end with what it has.
     """
 
     on_cycle: OnCycle | None = None
@@ -69,6 +70,7 @@ class SearchMonitor(NamedTuple):
         return self.past_deadline() or self.stop_requested()
 
 
+@equal_by_content
 class History(NamedTuple):
     """Progress of a search, one entry a cycle.
 
@@ -92,6 +94,7 @@ class History(NamedTuple):
         return cls(best, iteration_best, mean, frozen(table[:, 3].astype(np.int64)))
 
 
+@equal_by_content
 class Trails(NamedTuple):
     """The edges that ants walked; of very many, those walked most.
 
@@ -120,6 +123,7 @@ class Trails(NamedTuple):
         return cls(nodes, nodes, nodes, nodes, amounts, amounts)
 
 
+@equal_by_content
 class SearchResult(NamedTuple):
     """The result of a search over a roadmap.
 
@@ -146,7 +150,8 @@ class SearchRequest(NamedTuple):
         workers: number of processes that they are spread over.
         time_limit: [s] for the search, from its beginning.
         on_cycle: called after each cycle of a single colony, or None.
-        stop_requested: asked between cycles; whether the search is to end with what it has.
+        stop_requested: asked often; whether the search is to end with what it has.
+        begin: called when the search begins, after the lattice has been set up.
     """
 
     refine: bool | None = None
@@ -155,13 +160,16 @@ class SearchRequest(NamedTuple):
     time_limit: float = math.inf
     on_cycle: OnCycle | None = None
     stop_requested: Callable[[], bool] = bool
+    begin: Callable[[], object] = bool
 
     def monitor(self) -> SearchMonitor:
         """The monitor of a search that begins now."""
+        self.begin()
         deadline = time.monotonic() + self.time_limit
         return SearchMonitor(self.on_cycle, deadline, self.stop_requested)
 
 
+@equal_by_content
 class Solution(NamedTuple):
     """What a planner returns: a proven motion and its figures of merit.
 

@@ -1,38 +1,44 @@
 """Independent colonies on worker processes, by loky.
 
 Each worker has an executor of its own, so that the one that dies can be named. Workers do not run
-the caller's `__main__` again. They ignore Ctrl-C: the first one asks them, through an event, for
-what they have; a second one ends them.
+the caller's `__main__` again. They never receive Ctrl-C: the caller asks them, through an event,
+for what they have, or ends them. Workers whose caller has died end by themselves.
 """
 
 from __future__ import annotations
 
+import os
 import signal
 import time
-from collections.abc import Callable
-from concurrent.futures import Future, wait
+from collections.abc import Callable, Iterator
+from concurrent.futures import wait
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from ffsr_plan.core.errors import WorkerDied
-from ffsr_plan.search.records import SearchMonitor
+from ffsr_plan.search.records import SearchMonitor, SearchRequest
 
 Job = TypeVar("Job")
 Outcome = TypeVar("Outcome")
-if TYPE_CHECKING:  # numpy loads its generators when they are first named
+if TYPE_CHECKING:
+    from loky import ProcessPoolExecutor
+
+    # numpy loads its generators when they are first named
     Run = Callable[[Job, list[np.random.Generator], SearchMonitor], list[Outcome]]
 
-_POLL = 0.2  # [s] between checks for Ctrl-C
+_POLL = 0.2  # [s] between checks for results and Ctrl-C
 _stop_event: Any = None  # in a worker: set by the caller when Ctrl-C was pressed
+_caller = 0  # in a worker: the process that started it
 
 
 def run_on_workers(
     run: Run[Job, Outcome],
     job: Job,
     rngs: list[np.random.Generator],
-    workers: int,
-    time_limit: float,
+    request: SearchRequest,
 ) -> list[Outcome]:
     """One outcome for each generator, in their order, whatever the number of workers.
 
@@ -41,8 +47,8 @@ def run_on_workers(
             and a monitor; returns one outcome a generator, fewer if it was stopped.
         job: whatever `run` needs; it has to be picklable.
         rngs: one a colony.
-        workers: number of processes.
-        time_limit: [s] for the searches of each worker, from when it has started.
+        request: number of processes, stopping condition, and the time for the searches of each
+            worker from when it has started.
 
     Raises:
         WorkerDied: with the worker's number, its colonies and its exit status.
@@ -51,15 +57,22 @@ def run_on_workers(
     from loky.backend.context import get_context
     from loky.process_executor import TerminatedWorkerError
 
-    shares = [list(range(w, len(rngs), workers)) for w in range(min(workers, len(rngs)))]
+    workers = min(request.workers, len(rngs))
+    shares = [list(range(w, len(rngs), workers)) for w in range(workers)]
     stop = get_context("loky").Event()
-    executors = [ProcessPoolExecutor(1, initializer=_start, initargs=(stop,)) for _ in shares]
+    executors = [
+        ProcessPoolExecutor(1, initializer=_start, initargs=(stop, os.getpid())) for _ in shares
+    ]
     try:
-        futures = [
-            executor.submit(_run_share, run, job, [rngs[k] for k in share], time_limit)
-            for executor, share in zip(executors, shares, strict=True)
-        ]
-        _wait(futures, stop)
+        with _ctrl_c_blocked():
+            futures = [
+                executor.submit(_run_share, run, job, [rngs[k] for k in share], request.time_limit)
+                for executor, share in zip(executors, shares, strict=True)
+            ]
+        request.begin()
+        while wait(futures, timeout=_POLL).not_done:
+            if request.stop_requested():
+                stop.set()
         outcomes: dict[int, Outcome] = {}
         for worker, (share, future) in enumerate(zip(shares, futures, strict=True)):
             try:
@@ -67,33 +80,51 @@ def run_on_workers(
             except TerminatedWorkerError as error:
                 raise WorkerDied(worker, share, _exit_status(error)) from None
     finally:
-        for executor in executors:
-            executor.shutdown(wait=True, kill_workers=True)
+        _end(executors)
     return [outcomes[k] for k in sorted(outcomes)]
 
 
-def _start(stop: Any) -> None:  # noqa: ANN401 - an event of loky's context has no public type
-    global _stop_event
+@contextmanager
+def _ctrl_c_blocked() -> Iterator[None]:
+    """Processes that the body starts never receive Ctrl-C; this one receives it after the body."""
+    resource_tracker.ensure_running()  # to start it would end the block
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _end(executors: list[ProcessPoolExecutor]) -> None:
+    """Kill the workers; Ctrl-C meanwhile is raised in the end."""
+    interrupt: KeyboardInterrupt | None = None
+    for executor in executors:
+        try:
+            executor.shutdown(wait=True, kill_workers=True)
+        except KeyboardInterrupt as error:
+            interrupt = error
+            executor.shutdown(wait=True, kill_workers=True)
+    if interrupt is not None:
+        raise interrupt
+
+
+def _start(stop: Any, caller: int) -> None:  # noqa: ANN401 - loky's event has no public type
+    global _stop_event, _caller
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _stop_event = stop
+    _stop_event, _caller = stop, caller
 
 
 def _run_share(
     run: Run[Job, Outcome], job: Job, rngs: list[np.random.Generator], time_limit: float
 ) -> list[Outcome]:
     deadline = time.monotonic() + time_limit
-    return run(job, rngs, SearchMonitor(None, deadline, lambda: bool(_stop_event.is_set())))
+    return run(job, rngs, SearchMonitor(None, deadline, _stop_requested))
 
 
-def _wait(futures: list[Future[Any]], stop: Any) -> None:  # noqa: ANN401
-    """Wait for all. The first Ctrl-C asks the workers to stop, a second one is raised."""
-    try:
-        while wait(futures, timeout=_POLL).not_done:
-            pass
-    except KeyboardInterrupt:
-        stop.set()
-        while wait(futures, timeout=_POLL).not_done:
-            pass
+def _stop_requested() -> bool:
+    if os.getppid() != _caller:
+        os._exit(1)
+    return bool(_stop_event.is_set())
 
 
 def _exit_status(error: Exception) -> str:

@@ -20,6 +20,8 @@ from ffsr_plan.dynamics.inverse_dynamics import States
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.robot import SpaceRobot
 
+BYTES_PER_CELL = 100
+"""Memory [bytes] of a number while a table is worked out and written."""
 Table = dict[str, Array]
 """Columns (N,), by header."""
 

@@ -13,10 +13,13 @@ from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.setting_rules import Number, Rule
 from ffsr_plan.core.settings import settings
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.trajectory.straight_runs import StraightRuns
 
 _LARGEST_LIMIT = 1e9  # with larger ones thrust and delta-v would be dominated by rounding
+_OF_WHEELS = ("turn_velocity", "turn_acceleration")
+_OF_THRUSTERS = ("base_velocity", "thruster_acceleration", "thruster_jerk", "velocity_jump")
 PerJoint = float | Mapping[str, float] | None
 """One limit for all joints, limits by joint name, or None."""
 PositiveOrNone = Annotated[float, Number(above=0.0, at_most=_LARGEST_LIMIT)] | None
@@ -149,6 +152,21 @@ def read_limits(robot: SpaceRobot, **given: Any) -> FlightLimits:  # noqa: ANN40
         InvalidInput: a limit that is not allowed, or a joint that the robot does not have.
     """
     return LimitSettings(**given).for_robot(robot)
+
+
+def refuse_limits_without_actuator(mode: Mode, **given: float | None) -> None:
+    """Raise `InvalidInput` for a limit of wheels or thrusters that a mode does not have.
+
+    Args:
+        mode: what actuates the base.
+        **given: limits by name; None and 0 where none is given.
+    """
+    lacking = dict.fromkeys(_OF_THRUSTERS, "thrusters") if mode.floats else {}
+    lacking |= {} if mode.has_wheels else dict.fromkeys(_OF_WHEELS, "wheels")
+    for name, actuator in lacking.items():
+        if given[name]:
+            allowed = f"none in the mode {mode}: it has no {actuator}"
+            raise InvalidInput(name, given[name], allowed)
 
 
 def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, floats: bool) -> None:

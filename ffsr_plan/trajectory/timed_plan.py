@@ -27,10 +27,12 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.checks import finite_array, number
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.dynamics.inverse_dynamics import States, states
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.trajectory.csv_tables import trajectory_table, write_csv
+from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, trajectory_table, write_csv
 from ffsr_plan.trajectory.flight_limits import FlightLimits, check_limits
 from ffsr_plan.trajectory.straight_runs import StraightRuns, straight_runs
 from ffsr_plan.trajectory.time_law import PulseLimits, TimeLaw, time_law
@@ -153,8 +155,10 @@ class TimedPlan:
         Raises:
             InvalidInput: a file that cannot be written, or a rate that is not possible.
         """
-        times = self.clock(rate)
-        write_csv(Path(path), trajectory_table(self.motion.robot, times, self.at(times)))
+        target, times = checked_path("path", path), self.clock(rate)
+        size = {"rows": len(times), "columns": 30 + 5 * self.motion.robot.nd}
+        check_memory("rate", size, BYTES_PER_CELL, "a lower rate")
+        write_csv(target, trajectory_table(self.motion.robot, times, self.at(times)))
 
 
 def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.verification.motion_samples import link_poses
+from ffsr_plan.verification.motion_samples import base_frame_poses, base_turns
 from ffsr_plan.verification.urdf_reading import Bodies
 
 if TYPE_CHECKING:
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 # central difference of eighth order: weights of the steps 1 .. 4 to either side
 _STENCIL = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])
 _SPACING = 0.05  # step of the differences, as a share of an edge
+_LARGEST_STEP = 0.15  # [rad or m] of a joint over one step of the differences
 _MANY_EDGES = 8  # with fewer edges each is longer, and the step is reduced in proportion
+_SLOW_TURN = 1e-4  # [rad per edge]
 _STATIONS = (0.22, 0.5, 0.78)  # times on each edge at which the momentum is computed
 
 
@@ -48,8 +50,7 @@ def wheel_momentum_error(plan: PlanData, bodies: Bodies) -> float:
     s, rate = law(elapsed), law.deriv()(elapsed) * divisions / duration
     total, scale = _momentum(plan, bodies, s * divisions)
     wheels = plan.wheel_momentum(duration, elapsed * duration)
-    base = link_poses(plan, bodies, plan.at(s))[bodies.root][:, :3, :3]
-    rotated = np.einsum("nij,nj->ni", base, wheels.vectors)
+    rotated = np.einsum("nij,nj->ni", base_turns(plan.at(s)), wheels.vectors)
     sums = [stored + rate[:, None] * total for stored in (rotated, wheels.world)]
     return _relative(np.concatenate(sums), rate * scale)
 
@@ -69,16 +70,21 @@ def _relative(vectors: Array, scale: Array) -> float:
 def _momentum(plan: PlanData, bodies: Bodies, stations: Array) -> tuple[Array, Array]:
     """Sum of m (r - c) x (v - v_c) + I w over bodies (n, 3), and of the terms' sizes (n,).
 
-    World axes, at `stations` (n,) counted in edges [kg m^2 rad per edge].
+    World axes, at `stations` (n,) counted in edges [kg m^2 rad per edge]. Places are counted from
+    the base origin: the motion of that point does not change momenta about the centre of mass.
     """
     divisions = plan.problem.lattice.divisions
     spacing = _SPACING * min(1.0, divisions / _MANY_EDGES)
+    fastest = float(np.max(np.abs(np.diff(plan.motion.joint_values, axis=0)), initial=0.0))
+    spacing = min(spacing, _LARGEST_STEP / max(fastest, _LARGEST_STEP))
     steps = np.arange(-4, 5) * spacing
     times = stations[:, None] + steps
-    poses = link_poses(plan, bodies, plan.at(times.ravel() / divisions))
+    q = plan.at(times.ravel() / divisions)
+    turns, poses = base_turns(q), base_frame_poses(plan, bodies, q)
     masses, points, velocities, spins, scale = [], [], [], [], np.zeros(len(stations))
     for link, inertial in bodies.inertials.items():
         frame = poses[link] @ (np.eye(4) if inertial.origin is None else inertial.origin)
+        frame[:, :3] = turns @ frame[:, :3]  # world axes, from the base origin
         frame = frame.reshape(len(stations), len(steps), 4, 4)
         middle = frame[:, 4]
         velocity, angular = _rates(frame, spacing)
@@ -98,9 +104,8 @@ def _momentum(plan: PlanData, bodies: Bodies, stations: Array) -> tuple[Array, A
         mass[:, :, 0] * np.linalg.norm(arms, axis=2) * np.linalg.norm(relative, axis=2), axis=0
     )
     total = np.sum(orbital, axis=0) + np.sum(spins, axis=0)
-    # without motion relative to the base only rounding errors of the translation remain
-    rigid = np.sum(mass[:, :, 0] * np.linalg.norm(arms, axis=2), axis=0)
-    floor = 1e-4 * rigid * np.linalg.norm(drift, axis=1)
+    # where hardly anything moves only rounding errors remain: count a slow turn of the whole
+    floor = _SLOW_TURN * np.sum(mass[:, :, 0] * np.sum(arms * arms, axis=2), axis=0)
     return total, np.maximum(scale, floor)
 
 

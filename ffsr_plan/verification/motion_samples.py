@@ -1,4 +1,8 @@
-"""Distances, centre of mass and step lengths at dense samples of a plan's motion."""
+"""Samples of a plan's motion: base poses, and link poses relative to the base.
+
+Places are taken relative to the base, and base positions relative to the start, so that rounding
+does not grow with the distance from the world's origin.
+"""
 
 from __future__ import annotations
 
@@ -6,65 +10,103 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
-from ffsr_plan.verification.separation import separation
-from ffsr_plan.verification.solids import Shape, least_sphere_distance
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.verification.momentum_map import MomentumMap, momentum_map
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 
 if TYPE_CHECKING:
     from ffsr_plan.plans.plan_data import PlanData
 
-_BOUNDING_SPHERE_GAP = 0.02  # [m] pairs farther apart are bounded by their bounding spheres
 
-
-class EdgeSamples(NamedTuple):
-    """Results of dense samples on one edge.
+class Samples(NamedTuple):
+    """Configurations of a motion.
 
     Attributes:
-        clearance: least distance of a link to an obstacle [m].
-        separation: least lower bound on the distance of two links that must not touch [m].
-        centers_of_mass: (n, 3) of the whole robot, world axes [m].
-        largest_step: longest displacement of a shape's centre between two samples [m].
+        base_turns: (N, 3, 3) rotations of the base, world axes.
+        base_places: (N, 3) base origins from the start's, world axes [m].
+        turns: (N, s, 3, 3) rotations of the shapes, base axes.
+        places: (N, s, 3) origins of the shapes from the base origin, base axes [m].
+        momentum: what base and joints contribute to the momentum.
+        centers_of_mass: (N, 3) of the robot from the start's base origin, world axes [m].
+        deviation: (N,) distance of joints and base from straight lines between corners [m, rad].
     """
 
-    clearance: float
-    separation: float
+    base_turns: Array
+    base_places: Array
+    turns: Array
+    places: Array
+    momentum: MomentumMap
     centers_of_mass: Array
-    largest_step: float
+    deviation: Array
+
+    def with_turns_of(self, other: Samples) -> Samples:
+        """The same with the base rotations and momenta of more samples behind its own."""
+        momentum = self.momentum.followed_by(other.momentum)
+        turns = np.concatenate([self.base_turns, other.base_turns])
+        return self._replace(base_turns=turns, momentum=momentum)
 
 
-def sample_edges(plan: PlanData, bodies: Bodies, samples: int) -> list[EdgeSamples]:
-    """Sample every edge of a plan.
+class Sampler:
+    """Samples a plan's motion.
 
-    Args:
-        plan: the plan.
-        bodies: the robot, from its URDF.
-        samples: number of equal time steps on each edge.
-
-    Returns:
-        The results, edge by edge.
+    Attributes:
+        positions: (m + 1, 3) base origins at the corners, from the start's [m].
+        joint_values: (m + 1, nd) at the corners, unwrapped [rad or m].
     """
-    pairs = bodies.pairs()
-    divisions = plan.problem.lattice.divisions
-    results = []
-    for edge in range(divisions):
-        q = plan.at(np.minimum((edge + np.linspace(0.0, 1.0, samples + 1)) / divisions, 1.0))
-        poses = link_poses(plan, bodies, q)
-        placed = [poses[s.link] @ s.placement for s in bodies.shapes]
-        steps = [np.linalg.norm(np.diff(p[:, :3, 3], axis=0), axis=1).max() for p in placed]
-        results.append(
-            EdgeSamples(
-                _least_clearance(plan, bodies.shapes, placed),
-                _least_separation(pairs, dict(zip(bodies.shapes, placed, strict=True))),
-                _centers_of_mass(bodies, poses),
-                max([0.0, *map(float, steps)]),
-            )
+
+    def __init__(self, plan: PlanData, bodies: Bodies) -> None:
+        """Prepare sampling.
+
+        Args:
+            plan: the plan.
+            bodies: the robot, from its URDF.
+        """
+        self._plan, self._bodies = plan, bodies
+        self.edges = plan.problem.lattice.divisions
+        self._origin = plan.problem.start[:3]
+        self._corners = plan.at(np.arange(self.edges + 1) / self.edges)
+        self.positions: Array = self._corners[:, :3] - self._origin
+        self.joint_values: Array = plan.motion.joint_values
+        self._wraps = np.isinf(plan.problem.robot.upper)
+
+    def at(self, edge: IntArray, time: Array) -> Samples:
+        """Configurations at times (N,) from 0 to 1 on edges (N,)."""
+        q = self._plan.at(np.minimum((edge + time) / self.edges, 1.0))
+        poses = base_frame_poses(self._plan, self._bodies, q)
+        placed = [poses[shape.link] @ shape.placement for shape in self._bodies.shapes]
+        frames = np.stack(placed, axis=1) if placed else np.zeros((len(q), 0, 4, 4))
+        momentum = momentum_map(self._bodies, self._plan.problem.robot.joint_names, poses)
+        turns = base_turns(q)
+        places = q[:, :3] - self._origin
+        return Samples(
+            base_turns=turns,
+            base_places=places,
+            turns=np.ascontiguousarray(frames[..., :3, :3]),
+            places=np.ascontiguousarray(frames[..., :3, 3]),
+            momentum=momentum,
+            centers_of_mass=places + np.einsum("nij,nj->ni", turns, momentum.centers),
+            deviation=self._deviation(edge, time, q),
         )
-    return results
+
+    def _deviation(self, edge: IntArray, time: Array, q: Array) -> Array:
+        """(N,) largest difference from straight lines between the corners."""
+        t = time[:, None]
+        joints = (1.0 - t) * self.joint_values[edge] + t * self.joint_values[edge + 1]
+        apart = self._plan.problem.robot.joint_values(q) - joints
+        apart = np.where(self._wraps, (apart + np.pi) % (2.0 * np.pi) - np.pi, apart)
+        if not self._plan.problem.mode.floats:
+            straight = (1.0 - t) * self.positions[edge] + t * self.positions[edge + 1]
+            apart = np.hstack([apart, q[:, :3] - self._origin - straight])
+        return np.max(np.abs(apart), axis=1, initial=0.0)
 
 
-def link_poses(plan: PlanData, bodies: Bodies, q: Array) -> dict[str, Array]:
-    """Poses of all links by name.
+def base_turns(q: Array) -> Array:
+    """(N, 3, 3) rotations of the base of configurations (N, nq)."""
+    return pose(np.zeros((len(q), 3)), q[:, 3:7])[:, :3, :3]
+
+
+def base_frame_poses(plan: PlanData, bodies: Bodies, q: Array) -> dict[str, Array]:
+    """Poses of all links relative to the base.
 
     Args:
         plan: the plan, for the names of the joints.
@@ -72,48 +114,9 @@ def link_poses(plan: PlanData, bodies: Bodies, q: Array) -> dict[str, Array]:
         q: (N, nq) configurations.
 
     Returns:
-        (N, 4, 4) for each link, link axes to world axes.
+        (N, 4, 4) for each link by name, link axes to base axes.
     """
     robot = plan.problem.robot
     values = robot.joint_values(q)
     joints = {name: values[:, k] for k, name in enumerate(robot.joint_names)}
-    return bodies.link_poses(pose(q[:, :3], q[:, 3:7]), joints)
-
-
-def _centers_of_mass(bodies: Bodies, poses: dict[str, Array]) -> Array:
-    """(N, 3) of the whole robot in the world [m]."""
-    mass, moment = 0.0, np.zeros(3)
-    for link, inertial in bodies.inertials.items():
-        frame = poses[link] @ (np.eye(4) if inertial.origin is None else inertial.origin)
-        mass, moment = mass + inertial.mass, moment + inertial.mass * frame[:, :3, 3]
-    return moment / mass
-
-
-def _least_clearance(plan: PlanData, shapes: list[Shape], placed: list[Array]) -> float:
-    """Least distance over all samples, without the spheres that cannot be the nearest."""
-    centers, radii = plan.problem.scene.centers, plan.problem.scene.radii
-    least = np.inf
-    if len(radii) == 0:
-        return least
-    for shape, at in zip(shapes, placed, strict=True):
-        track = at[:, :3, 3]
-        middle = track.mean(axis=0)
-        extent = float(np.linalg.norm(track - middle, axis=1).max())
-        distance = np.linalg.norm(centers - middle, axis=1) - radii
-        near = distance - extent - shape.radius <= min(least, float(distance.min()) + extent)
-        if near.any():
-            least = min(least, least_sphere_distance(shape, at, centers[near], radii[near]))
-    return least
-
-
-def _least_separation(pairs: list[tuple[Shape, Shape]], placed: dict[Shape, Array]) -> float:
-    """Least lower bound over all samples of all pairs, by bounding spheres for distant pairs."""
-    least = np.inf
-    for a, b in pairs:
-        pose_a, pose_b = placed[a], placed[b]
-        gap = np.linalg.norm(pose_a[:, :3, 3] - pose_b[:, :3, 3], axis=1) - a.radius - b.radius
-        close = gap <= _BOUNDING_SPHERE_GAP
-        least = min(least, float(np.min(gap[~close], initial=np.inf)))
-        if close.any():
-            least = min(least, float(separation(a, pose_a[close], b, pose_b[close]).min()))
-    return least
+    return bodies.link_poses(np.broadcast_to(np.eye(4), (len(q), 4, 4)), joints)

@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.verification.motion_samples import link_poses
-from ffsr_plan.verification.solids import sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies
 
 if TYPE_CHECKING:
@@ -41,61 +39,85 @@ class Recomputed(NamedTuple):
     objective_tolerance: float
 
 
-def recompute(plan: PlanData, bodies: Bodies) -> Recomputed:
-    """Recompute the clearances at the nodes, L and F of a plan.
+def recompute(plan: PlanData, bodies: Bodies, nodes: Array) -> Recomputed:
+    """Recompute L and F of a plan, and compare its clearances at the nodes.
 
     Args:
         plan: the plan.
         bodies: the robot, from its URDF.
+        nodes: (m + 1,) clearances measured at the nodes [m].
     """
     problem = plan.problem
-    unit, q = problem.length_unit, plan.configurations
-    nodes = _node_clearances(plan, bodies)
     with np.errstate(invalid="ignore"):
         difference = np.where(nodes == plan.clearances, 0.0, np.abs(nodes - plan.clearances))
-    length = _length(problem, q)
-    capped = nodes if problem.clearance_cap is None else np.minimum(nodes, problem.clearance_cap)
-    objective = length / unit + problem.delta * float(np.sum(unit / capped[1:-1]))
-    scale = max(abs(objective), 1e-12)
-    hulls = any(shape.half is None and len(shape.points) > 2 for shape in bodies.shapes)
-    sharp = HULL_AGREEMENT if hulls else AGREEMENT
-    blur = problem.delta * float(np.sum(unit / capped[1:-1] ** 2)) * (sharp - AGREEMENT)
+    length = length_of(problem, plan.motion.positions, plan.motion.joint_values)
+    objective = objective_of(problem, length, nodes)
+    sharp, share = tolerances(problem, bodies, nodes, objective)
     return Recomputed(
         length,
         objective,
         clearance_error=float(difference.max()),
-        objective_error=abs(objective - plan.objective) / scale,
+        objective_error=abs(objective - plan.objective) / max(abs(objective), 1e-12),
         clearance_tolerance=sharp,
-        objective_tolerance=AGREEMENT + blur / scale,
+        objective_tolerance=share,
     )
 
 
-def _node_clearances(plan: PlanData, bodies: Bodies) -> Array:
-    """(m + 1,) least distance to an obstacle at each node [m]."""
-    scene, q = plan.problem.scene, plan.configurations
-    nodes = np.full(plan.problem.lattice.divisions + 1, np.inf)
-    if len(scene.radii):
-        poses = link_poses(plan, bodies, q)
-        for shape in bodies.shapes:
-            at = poses[shape.link] @ shape.placement
-            each = sphere_distance(shape, at, scene.centers, scene.radii)
-            nodes = np.minimum(nodes, each.min(axis=1))
-    return nodes
+def tolerances(
+    problem: Problem, bodies: Bodies, nodes: Array, objective: float
+) -> tuple[float, float]:
+    """Allowed difference of a clearance [m] and, relative, of F.
+
+    Args:
+        problem: gives the objective.
+        bodies: the robot, from its URDF.
+        nodes: (m + 1,) clearances at the nodes [m].
+        objective: F.
+    """
+    hulls = any(shape.half is None and len(shape.points) > 2 for shape in bodies.shapes)
+    sharp = HULL_AGREEMENT if hulls else AGREEMENT
+    slope = problem.delta * float(np.sum(problem.length_unit / _capped(problem, nodes)[1:-1] ** 2))
+    return sharp, AGREEMENT + slope * (sharp - AGREEMENT) / max(abs(objective), 1e-12)
 
 
-def _length(problem: Problem, q: Array) -> float:
-    """L [m] of configurations (m + 1, nq)."""
+def objective_of(problem: Problem, length: float, nodes: Array) -> float:
+    """F of Eq. 8 [length units].
+
+    Args:
+        problem: gives the objective.
+        length: L [m].
+        nodes: (m + 1,) clearances at the nodes [m].
+    """
+    unit = problem.length_unit
+    near = float(np.sum(unit / _capped(problem, nodes)[1:-1])) if problem.delta else 0.0
+    return length / unit + problem.delta * near
+
+
+def _capped(problem: Problem, nodes: Array) -> Array:
+    """Clearances as F counts them, at least a nanometre."""
+    cap = np.inf if problem.clearance_cap is None else problem.clearance_cap
+    return np.clip(nodes, AGREEMENT, cap)
+
+
+def length_of(problem: Problem, positions: Array, joint_values: Array) -> float:
+    """L of Eq. 6 [m].
+
+    Args:
+        problem: gives start, goal and weights.
+        positions: (m + 1, 3) base origins at the nodes [m].
+        joint_values: (m + 1, nd) at the nodes, without jumps at half a turn [rad or m].
+    """
     m, robot = problem.lattice.divisions, problem.robot
-    steps = np.diff(robot.joint_values(q), axis=0)
-    steps = np.where(np.isinf(robot.upper), (steps + np.pi) % (2 * np.pi) - np.pi, steps)
+    steps = np.diff(joint_values, axis=0)
     straight = steps.mean(axis=0)  # postures displace nothing at start and goal
     weights = np.where(robot.prismatic, problem.position_weight, problem.rotation_weight)
     floats = problem.mode.floats  # the base's displacement is then not part of L
     along = np.zeros(3) if floats else (problem.goal[:3] - problem.start[:3]) / m
     nominal = np.sum((along * problem.position_weight) ** 2) + np.sum((straight * weights) ** 2)
     if problem.mode.has_wheels:
-        overlap = min(1.0, abs(float(problem.start[3:7] @ problem.goal[3:7])))
-        nominal += (2.0 * np.arccos(overlap) / m * problem.rotation_weight) ** 2
-    across = (np.diff(q[:, :3], axis=0) - along) * (0.0 if floats else problem.position_weight)
+        ends = [float(np.linalg.norm(problem.start[3:7] + k * problem.goal[3:7])) for k in (-1, 1)]
+        angle = 4.0 * np.arctan2(min(ends), max(ends))
+        nominal += (angle / m * problem.rotation_weight) ** 2
+    across = (np.diff(positions, axis=0) - along) * (0.0 if floats else problem.position_weight)
     detours = (steps - straight) * weights
     return float(np.sum(np.sqrt(nominal + np.sum(across**2, axis=1) + np.sum(detours**2, axis=1))))

@@ -13,8 +13,9 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
@@ -27,6 +28,28 @@ if TYPE_CHECKING:
     from ffsr_plan.robots.collision_shapes import Replacement
 
 
+class Joint(NamedTuple):
+    """A joint of a URDF.
+
+    Attributes:
+        name: its name.
+        parent: name of the link nearer to the root.
+        child: name of the other link.
+        origin: (4, 4) pose of the joint in the parent's frame.
+        axis: (3,) unit vector in the joint's frame; zero for a fixed joint.
+        moves: whether it is not fixed.
+        slides: whether it is prismatic.
+    """
+
+    name: str
+    parent: str
+    child: str
+    origin: Array
+    axis: Array
+    moves: bool
+    slides: bool
+
+
 class Bodies:
     """Links, joints, masses and shapes of a URDF.
 
@@ -34,6 +57,7 @@ class Bodies:
         root: name of the root link.
         inertials: mass, centre of mass and inertia of each link that has a mass, by name.
         shapes: the collision shapes, in the order of the URDF.
+        unchecked: links with a mass or a visual shape, but no collision shape.
     """
 
     def __init__(self, urdf: str, srdf: str = "", replacements: Sequence[Replacement] = ()) -> None:
@@ -55,6 +79,7 @@ class Bodies:
             for link in root.findall("link")
             for number, collision in enumerate(link.findall("collision"))
         ]
+        seen = {str(link.get("name")) for link in root.findall("link") if link.findall("visual")}
         for link in root.findall("link"):
             for shape in [*link.findall("collision"), *link.findall("visual")]:
                 link.remove(shape)
@@ -70,6 +95,13 @@ class Bodies:
             self._children[joint.parent].append(joint)
         heads = {joint.child for joint in robot.joints}
         self.root = next(link.name for link in robot.links if link.name not in heads)
+        shaped = {name for name, _, _ in self._collisions}
+        self.unchecked = tuple(
+            link.name
+            for link in robot.links
+            if link.name not in shaped
+            and (link.name in seen or (link.inertial and link.inertial.mass > 0.0))
+        )
         self.inertials = {link.name: link.inertial for link in robot.links if link.inertial}
         replaced = {(r.link, r.number): r for r in replacements}
         self.shapes = [
@@ -120,7 +152,28 @@ class Bodies:
             and b.link not in _may_touch(a.link, neighbours, shaped)
         ]
 
-    def link_poses(self, base: Array, joints: dict[str, Array]) -> dict[str, Array]:
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """All joints, each after those between it and the root."""
+        found, waiting = [], [self.root]
+        while waiting:
+            for joint in self._children[waiting.pop()]:
+                axis = np.array([1.0, 0.0, 0.0]) if joint.axis is None else np.array(joint.axis)
+                found.append(
+                    Joint(
+                        joint.name,
+                        joint.parent,
+                        joint.child,
+                        np.eye(4) if joint.origin is None else np.asarray(joint.origin),
+                        axis / np.linalg.norm(axis) if joint.type != "fixed" else np.zeros(3),
+                        joint.type != "fixed",
+                        joint.type == "prismatic",
+                    )
+                )
+                waiting.append(joint.child)
+        return tuple(found)
+
+    def link_poses(self, base: Array, joints: Mapping[str, Array]) -> dict[str, Array]:
         """(N, 4, 4) pose of every link in the world.
 
         Args:
@@ -131,16 +184,11 @@ class Bodies:
             (N, 4, 4) for each link by name.
         """
         poses = {self.root: base}
-        waiting = [self.root]
-        while waiting:
-            parent = waiting.pop()
-            for joint in self._children[parent]:
-                origin = np.eye(4) if joint.origin is None else joint.origin
-                pose = poses[parent] @ origin
-                if joint.type != "fixed":
-                    pose = pose @ _displacement(joint, joints[joint.name])
-                poses[joint.child] = pose
-                waiting.append(joint.child)
+        for joint in self.joints:
+            pose = poses[joint.parent] @ joint.origin
+            if joint.moves:
+                pose = pose @ _displacement(joint, joints[joint.name])
+            poses[joint.child] = pose
         return poses
 
 
@@ -164,15 +212,13 @@ def pose(position: Array, quat_xyzw: Array) -> Array:
     return result
 
 
-def _displacement(joint: Any, value: Array) -> Array:  # noqa: ANN401 - yourdfpy has no types
+def _displacement(joint: Joint, value: Array) -> Array:
     """(N, 4, 4) displacement by a joint's values (N,) [rad or m]."""
     result = np.broadcast_to(np.eye(4), (len(value), 4, 4)).copy()
-    axis = np.array([1.0, 0.0, 0.0]) if joint.axis is None else np.asarray(joint.axis, float)
-    axis = axis / np.linalg.norm(axis)
-    if joint.type == "prismatic":
-        result[:, :3, 3] = value[:, None] * axis
+    if joint.slides:
+        result[:, :3, 3] = value[:, None] * joint.axis
         return result
-    x, y, z = axis
+    x, y, z = joint.axis
     skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     sine, cosine = np.sin(value)[:, None, None], np.cos(value)[:, None, None]
     result[:, :3, :3] = np.eye(3) + sine * skew + (1.0 - cosine) * (skew @ skew)  # Rodrigues

@@ -1,8 +1,10 @@
-"""Independent verification of a plan: dense samples, closed-form distances, momentum by bodies.
+"""Independent verification of a plan: closed-form distances all along it, momentum by bodies.
 
 No code here calls the planner's clearance, momentum, length or objective code. The motion `plan.at`
 is sampled as it is; velocities are finite differences of link poses. The plan's wheel momentum,
-`plan.wheel_momentum`, is compared with these.
+`plan.wheel_momentum`, is compared with these. Samples are halved until nothing can be hidden
+between them (`sweep`); the bound on the base's rotation behind that rests on the conservation of
+momentum, which is checked at three stations on every edge, and at every sample.
 
 If a cylinder or mesh is replaced by another solid (`SpaceRobot.replacements`), all distances are to
 that solid, as in the plan, and the verification checks that it contains the original: the cylinder
@@ -12,15 +14,18 @@ as clear.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ffsr_plan.core.checks import whole_number
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.momentum_residual import momentum_residual, wheel_momentum_error
-from ffsr_plan.verification.motion_samples import EdgeSamples, sample_edges
 from ffsr_plan.verification.recomputed_objective import AGREEMENT, Recomputed, recompute
+from ffsr_plan.verification.recomputed_path import LatticePath
+from ffsr_plan.verification.sweep import CONFIRMED, OnProgress, Swept, sweep
 from ffsr_plan.verification.urdf_reading import Bodies
 
 if TYPE_CHECKING:
@@ -28,6 +33,11 @@ if TYPE_CHECKING:
 
 MOMENTUM_LIMIT = 1e-9
 """Allowed relative error of angular momentum."""
+GOAL_LIMIT = 1e-6
+"""Allowed error of a demanded goal attitude [rad]."""
+SAMPLES = 50
+"""Even samples on each edge by default; more are added where they are needed."""
+_MOST_EVEN_SAMPLES = 10_000_000  # on all edges together, to limit the time
 
 
 @dataclass(frozen=True)
@@ -37,7 +47,12 @@ class Report:
     Attributes:
         ok: whether there are no problems.
         problems: one sentence for each violated condition.
+        not_checked: one sentence for each part of the plan that was not checked.
+        unchecked: links that have a mass or a visual shape but no collision shape: nothing is known
+            about obstacles in their way.
         least_clearance: least link-to-sphere distance over all samples [m].
+        clearance_bound: lower bound on that distance all along the motion, between the samples too,
+            from bounds on the travel of all points [m].
         least_self_separation: least lower bound on the distance of links that must not touch, over
             all samples [m].
         momentum_residual: largest norm of the angular momentum about the centre of mass, relative
@@ -49,12 +64,17 @@ class Report:
         clearance_error: largest error of the plan's node clearances [m].
         objective_error: relative error of the plan's F.
         samples: number of configurations whose distances were computed.
-        largest_step: longest displacement of a shape's centre between two samples [m].
+        largest_step: longest way of any point between two samples [m].
+        largest_gap: the same for samples between which a contact may be hidden; 0 where there are
+            none. Such a plan is not ok.
     """
 
     ok: bool
     problems: tuple[str, ...]
+    not_checked: tuple[str, ...]
+    unchecked: tuple[str, ...]
     least_clearance: float
+    clearance_bound: float
     least_self_separation: float
     momentum_residual: float | None
     center_drift: float | None
@@ -63,60 +83,92 @@ class Report:
     objective_error: float
     samples: int
     largest_step: float
+    largest_gap: float
 
 
-def verify(plan: PlanData, samples: int = 2000) -> Report:
+def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | None = None) -> Report:
     """Verify a plan from its configurations and its motion alone.
 
     Args:
         plan: the plan.
-        samples: number of distance checks for each edge.
+        samples: least number of equal time steps on each edge; where links are closer to obstacles
+            or to each other than they can move in such a step, it is halved.
+        on_progress: called with the share of the motion that is done, from 0 to 1.
 
     Returns:
-        The measured values and the problems found.
+        The measured values, the problems found, and what was not checked.
 
     Raises:
-        InvalidInput: `samples` is not a positive integer.
+        InvalidInput: `samples` is not a positive integer, or too large.
     """
-    samples = whole_number("samples", samples, at_least=1)
+    most = max(1, _MOST_EVEN_SAMPLES // plan.problem.lattice.divisions)
+    samples = whole_number("samples", samples, at_least=1, at_most=most)
+    if on_progress is not None and not callable(on_progress):
+        raise InvalidInput("on_progress", on_progress, "a function, or None")
     problem = plan.problem
     bodies = Bodies(problem.robot.urdf, problem.robot.srdf, problem.robot.replacements)
-    edges = sample_edges(plan, bodies, samples)
+    swept = sweep(plan, bodies, samples, on_progress)
     held = problem.mode.has_wheels
     residual = None if held else momentum_residual(plan, bodies)
     wheel_error = wheel_momentum_error(plan, bodies) if held else None
-    drift = _center_drift(edges) if problem.mode.floats else None
-    costs = recompute(plan, bodies)
+    drift = swept.drift if problem.mode.floats else None
+    with np.errstate(over="ignore", invalid="ignore"):  # absurd weights give infinite lengths
+        costs, path = recompute(plan, bodies, swept.nodes), LatticePath(plan)
     problems = (
         *_bad_input(plan, bodies),
-        *_collisions(plan, edges),
+        *_collisions(plan, swept),
+        *_other_motion(swept),
         *_broken_momentum(residual, wheel_error, drift),
         *_ends_and_limits(plan),
         *_other_costs(plan, costs),
+        *(path.problems(bodies, swept.nodes) if swept.finite else ()),
     )
-    least, gap = min(e.clearance for e in edges), min(e.separation for e in edges)
+    least = swept.clearance.value if swept.clearance else np.inf
+    gap = swept.separation.value if swept.separation else np.inf
     errors = (residual, drift, wheel_error, costs.clearance_error, costs.objective_error)
-    if any(value is not None and np.isnan(value) for value in (least, gap, *errors)):
+    if not swept.finite or any(v is not None and np.isnan(v) for v in (least, gap, *errors)):
         problems += ("some of the figures are not numbers",)
     return Report(
         ok=not problems,
         problems=problems,
+        not_checked=tuple(_not_checked(plan, path, bodies)),
+        unchecked=bodies.unchecked,
         least_clearance=least,
+        clearance_bound=float(swept.clearance_bound),
         least_self_separation=gap,
         momentum_residual=residual,
         center_drift=drift,
         wheel_momentum_error=wheel_error,
         clearance_error=costs.clearance_error,
         objective_error=costs.objective_error,
-        samples=sum(len(e.centers_of_mass) for e in edges),
-        largest_step=max(e.largest_step for e in edges),
+        samples=swept.samples,
+        largest_step=float(swept.largest_step),
+        largest_gap=max((place.value for place in swept.hidden if place), default=0.0),
     )
 
 
-def _center_drift(edges: list[EdgeSamples]) -> float:
-    """Largest distance of the centre of mass from its initial position [m]."""
-    start = edges[0].centers_of_mass[0]
-    return max(float(np.linalg.norm(e.centers_of_mass - start, axis=1).max()) for e in edges)
+def _not_checked(plan: PlanData, path: LatticePath, bodies: Bodies) -> Iterator[str]:
+    """What the verification takes as the plan has it."""
+    robot = plan.problem.robot
+    if plan.optimum_is_exact:
+        yield "that the optimum is the least F on the lattice (`LatticeOptimum` computes it anew)"
+    else:
+        yield "that the lower bound on F holds"
+    yield "how it was found: planner, seed, tolerance, history, trails, counts of edges and queries"
+    yield "whether the search was interrupted, and its seconds"
+    if plan.problem.scene.excess > 0.0:
+        yield "that the spheres cover what they stand for, and by how much they exceed it"
+    if path.bent:
+        yield "F on the lattice, from which the joints were moved to reach the goal's attitude"
+    elif path.moved:
+        yield "that the path on the lattice is free between its nodes: the refined one was checked"
+    if robot.meshes:
+        yield "that the hulls of meshes are those of their files, which the plan does not need"
+    if robot.disabled_pairs:
+        pairs = ", ".join(f"{a} and {b}" for a, b in robot.disabled_pairs)
+        yield f"pairs of links that the SRDF exempts: {pairs}"
+    if bodies.unchecked:
+        yield f"links without a shape for collisions: {', '.join(bodies.unchecked)}"
 
 
 def _bad_input(plan: PlanData, bodies: Bodies) -> list[str]:
@@ -128,19 +180,43 @@ def _bad_input(plan: PlanData, bodies: Bodies) -> list[str]:
     return problems
 
 
-def _collisions(plan: PlanData, edges: list[EdgeSamples]) -> list[str]:
+def _collisions(plan: PlanData, swept: Swept) -> list[str]:
     problems = []
-    clearances, separations = [e.clearance for e in edges], [e.separation for e in edges]
-    least, proven = min(clearances), plan.certificate.least_clearance
-    if least <= 0.0:
-        problems.append(
-            f"a link is {-least:.3g} m inside an obstacle on edge {np.argmin(clearances)}"
-        )
-    if min(separations) <= 0.0:
-        problems.append(f"two links touch on edge {int(np.argmin(separations))}")
+    proven, least = plan.certificate.least_clearance, np.inf
+    if swept.clearance is not None:
+        least, edge, names = swept.clearance
+        if least <= 0.0:
+            depth = f"{-least:.3g} m inside"
+            problems.append(f"link '{names[0]}' is {depth} an obstacle on edge {edge}")
+    if swept.separation is not None and swept.separation.value <= 0.0:
+        _, edge, names = swept.separation
+        problems.append(f"two links touch on edge {edge}: '{names[0]}' and '{names[1]}'")
     if proven > least + AGREEMENT:
         problems.append(
             f"the plan's proven clearance is {proven:.6g} m, but {least:.6g} m was measured"
+        )
+    elif np.isinf(proven) != np.isinf(least) or proven > swept.clearance_bound + CONFIRMED:
+        problems.append(f"the plan's proven clearance of {proven:.6g} m is not confirmed")
+    for place, other in zip(swept.hidden, ("an obstacle", "another link"), strict=True):
+        if place is not None:
+            other = f"link '{place.names[1]}'" if len(place.names) > 1 else other
+            problems.append(
+                f"link '{place.names[0]}' may touch {other} on edge {place.edge} between two "
+                f"samples {place.value:.2g} m apart"
+            )
+    return problems
+
+
+def _other_motion(swept: Swept) -> list[str]:
+    """Where the motion is not what bounds on its travel rest on."""
+    problems = []
+    if swept.deviation > AGREEMENT:
+        problems.append(
+            f"joints or base leave the straight line between two nodes by {swept.deviation:.3g}"
+        )
+    if swept.excess_turn > AGREEMENT:
+        problems.append(
+            f"the base turns by {swept.excess_turn:.3g} rad more between two samples than it can"
         )
     return problems
 
@@ -186,9 +262,9 @@ def _ends_and_limits(plan: PlanData) -> list[str]:
         if overlap < 1.0 - AGREEMENT:
             problems.append("the motion does not end at the goal's attitude")
     if problem.reach_attitude:
-        overlap = min(1.0, abs(float(last[3:7] @ problem.goal[3:7])))
-        if (missed := np.degrees(2.0 * np.arccos(overlap))) > 1.0:
-            problems.append(f"the goal's attitude is missed by {missed:.3g} degrees")
+        chord = min(np.linalg.norm(last[3:7] - sign * problem.goal[3:7]) for sign in (1.0, -1.0))
+        if (missed := 4.0 * np.arcsin(0.5 * chord)) > GOAL_LIMIT:
+            problems.append(f"the goal's attitude is missed by {missed:.3g} rad")
     corners = plan.at(np.arange(len(plan.configurations)) / problem.lattice.divisions)
     if np.abs(corners - plan.configurations).max() > AGREEMENT:
         problems.append("the motion does not pass through the plan's configurations")

@@ -78,3 +78,36 @@ def test_the_angle_rate_matrix_matches_finite_differences(abc, rate):
 def test_the_singular_angle_rate_matrix_is_refused():
     with pytest.raises(fp.InvalidInput, match="singular"):
         rotations.angle_rate_matrix(np.array([0.0, np.pi / 2, 0.0]))
+
+
+def half_turns(count=4000):
+    """Pairs of attitudes half a turn apart, axes and pairs of axes of the base among the axes."""
+    rng = np.random.default_rng(5)
+    axes = rng.normal(size=(count, 3))
+    axes[:: count // 40] = np.round(axes[:: count // 40])  # zeros, ones and twos
+    axes = axes[np.linalg.norm(axes, axis=1) > 0.0]
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    p = rotations.exp(rng.uniform(-3.0, 3.0, axes.shape))
+    return p, rotations.multiply(p, np.hstack([axes, np.zeros((len(axes), 1))])), rng
+
+
+def test_a_half_turn_has_one_sense_whatever_the_rounding():
+    p, q, rng = half_turns()
+    vectors = rotations.rotation_vector(p, q)
+    for _ in range(20):
+        rounded = [each + rng.uniform(-4e-16, 4e-16, each.shape) for each in (p, q)]
+        signs = rng.choice([-1.0, 1.0], (2, len(p), 1))  # q and -q are one attitude
+        again = rotations.rotation_vector(signs[0] * rounded[0], signs[1] * rounded[1])
+        assert np.allclose(again, vectors, atol=1e-14)
+    leading = vectors[np.arange(len(p)), np.argmax(np.abs(vectors) > 1e-5, axis=1)]
+    assert np.all(leading > 0.0)
+    there = rotations.multiply(p, rotations.exp(vectors))
+    assert np.max(rotations.angle_between(there, q)) < 1e-14
+
+
+@given(angles, angles)
+def test_other_rotations_take_the_smaller_angle(phi, psi):
+    p, q = rotations.exp(phi), rotations.exp(psi)
+    expected = rotations.log(rotations.multiply(rotations.inverse(p), q))
+    if np.linalg.norm(expected) < np.pi - 1e-6:
+        assert np.array_equal(rotations.rotation_vector(p, q), expected)

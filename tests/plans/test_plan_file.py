@@ -29,6 +29,14 @@ def test_a_plan_without_obstacles_saves_and_loads_too(point, tmp_path):
     assert plan.nodes.shape == (5, 2)
 
 
+def test_what_obstacles_come_from_is_saved_and_may_be_absent(fig2a_plan):
+    data = fig2a_plan.to_dict()
+    assert data["problem"]["scene"]["sources"][0] == ["obstacles.0", 1]
+    assert fp.Plan.from_dict(data).problem.scene.sources == fig2a_plan.problem.scene.sources
+    del data["problem"]["scene"]["sources"]  # as in files of version 0.1
+    assert fp.Plan.from_dict(data).problem.scene.sources == ()
+
+
 def test_a_plan_file_cut_short_is_refused(fig2a_plan, tmp_path):
     path = tmp_path / "plan.json"
     fig2a_plan.save(path)
@@ -84,23 +92,25 @@ def test_a_malformed_plan_with_a_valid_digest_is_refused(fig2a_plan, tmp_path, c
 
 
 FORGED = [
-    (lambda d: d.update(seed="x"), "seed of the plan: got 'x'"),
-    (lambda d: d.update(seed=-1), "seed of the plan: got -1"),
-    (lambda d: d.update(seed=True), "seed of the plan: got True"),
-    (lambda d: d.update(interrupted="no"), "interrupted of the plan"),
+    (lambda d: d.update(seed="x"), "seed: got 'x'"),
+    (lambda d: d.update(seed=-1), "seed: got -1"),
+    (lambda d: d.update(seed=True), "seed: got True"),
+    (lambda d: d.update(interrupted="no"), "plan.json', interrupted"),
     (lambda d: d["certificate"].update(edges_free=-1), "edges_free: got -1"),
     (lambda d: d["certificate"].update(edges_refused=1.5), "edges_refused: got 1.5"),
     (lambda d: d["certificate"].update(node_queries="3"), "node_queries: got '3'"),
     (lambda d: d["certificate"].update(edge_queries=-2), "edge_queries: got -2"),
     (lambda d: d["certificate"].update(least_clearance=-0.5), "least_clearance: got -0.5"),
-    (lambda d: d["nodes"].__setitem__(3, 999), "nodes of the plan, lateral: got 999"),
+    (lambda d: d["nodes"].__setitem__(3, 999), "nodes, lateral: got 999"),
     (
         lambda d: d["problem"]["robot"].update(disabled_pairs=[["base", "left_link_2"]]),
-        "disabled_pairs of the plan.*those of its SRDF",
+        "disabled_pairs: got.*those of its SRDF",
     ),
     (
-        lambda d: d["problem"]["robot"]["replacements"].append({"link": "base"}),
-        "replacements of the plan.*those of its URDF",
+        lambda d: d["problem"]["robot"]["replacements"].append(
+            {"link": "base", "number": 0, "shape": "mesh", "by": "hull", "excess": 0.0}
+        ),
+        "replacements: got.*those of its URDF",
     ),
 ]
 
@@ -122,12 +132,65 @@ def test_nodes_lie_within_the_lattice(robot, tmp_path, lattice):
     plan.save(path)
     assert fp.Plan.load(path) == plan
     resigned(path, lambda d: d["nodes"].__setitem__(2, 3))
-    with pytest.raises(fp.InvalidInput, match=r"nodes of the plan.*got 3"):
+    with pytest.raises(fp.InvalidInput, match=r"nodes, .*got 3"):
         fp.Plan.load(path)
 
 
+FIELDS = [
+    (lambda d: d.update(zz=1), "unknown key: got 'zz'"),
+    (lambda d: d["problem"].update(zz=1), "unknown key: got 'problem.zz'"),
+    (lambda d: d["problem"]["scene"].update(radius=[]), "unknown key: got 'problem.scene.radius'"),
+    (lambda d: d["problem"]["lattice"]["lateral"].update(width=1), "lattice.lateral.width'"),
+    (lambda d: d["planner"].update(ant=1), "unknown key: got 'planner.ant'.*did you mean"),
+    (lambda d: d["certificate"].pop("edges_free"), "certificate.edges_free: got None"),
+    (lambda d: d.update(optimum="1"), "optimum: got '1'; allowed: a finite number"),
+    (lambda d: d.update(length=True), "length: got True"),
+    (lambda d: d["clearances"].__setitem__(1, "x"), "clearances: got"),
+    (lambda d: d["nodes"].__setitem__(1, 0.5), "nodes: got"),
+    (lambda d: d["motion"].update(positions=[[0.0]]), "motion.positions: got"),
+    (lambda d: d["problem"]["scene"]["radii"].__setitem__(0, 10**400), "scene.radii: got"),
+    (lambda d: d["problem"].update(tolerance=0), "problem.tolerance: got 0"),
+    (lambda d: d["problem"]["lattice"].update(divisions=10**7), "nodes: got .*10000001"),
+    (lambda d: d["problem"]["lattice"]["lateral"].update(half_count=10**8), "problem.lattice"),
+    (
+        lambda d: d.update(planner={"name": "posture-annealing"}),
+        "planner.*: got .*allowed: .*posture ax",
+    ),
+]
+
+
+@pytest.mark.parametrize(("change", "message"), FIELDS)
+def test_a_refused_field_is_named_with_its_file(fig2a_plan, tmp_path, change, message):
+    fig2a_plan.save(tmp_path / "plan.json")
+    resigned(tmp_path / "plan.json", change)
+    with pytest.raises(fp.InvalidInput, match=rf"^plan file '.*plan.json'.*{message}"):
+        fp.Plan.load(tmp_path / "plan.json")
+
+
+def test_a_key_that_is_there_twice_is_refused(fig2a_plan, tmp_path):
+    path = tmp_path / "plan.json"
+    fig2a_plan.save(path)
+    path.write_text(path.read_text().rstrip()[:-1] + ',"length": 1.0}')
+    with pytest.raises(fp.InvalidInput, match="key 'length': got 'two values'"):
+        fp.Plan.load(path)
+
+
+def test_a_byte_order_mark_is_no_change(fig2a_plan, tmp_path):
+    path = tmp_path / "plan.json"
+    fig2a_plan.save(path)
+    path.write_text("\ufeff" + path.read_text())
+    assert fp.Plan.load(path) == fig2a_plan
+
+
 @pytest.mark.parametrize(
-    "text", ['{"format": "ffsr-plan/3", "a": NaN}', "[" * 100_000, '{"a": ' + "1" * 5001 + "}"]
+    "text",
+    [
+        "\0{}",
+        '{"format": "ffsr-plan/3", "a": NaN}',
+        "[" * 100_000,
+        '{"a":' * 20_000,
+        '{"a": ' + "1" * 5001 + "}",
+    ],
 )
 def test_hostile_json_is_refused(tmp_path, text):
     (tmp_path / "plan.json").write_text(text)

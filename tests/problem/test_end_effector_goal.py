@@ -119,6 +119,44 @@ def test_the_pose_error_of_a_planar_arm_is_its_closed_form(mode, target, missed)
     assert f"{missed:.4g} m" in str(error)
 
 
+@pytest.mark.parametrize("mode", ["free-flying", "free-floating"])
+def test_the_error_says_what_a_held_base_would_reach(mode):
+    arm, angle = planar_arm(3.0), 1.8
+    reach = UPPER + FORE - 0.01
+    target = (SHOULDER + reach * np.cos(angle), reach * np.sin(angle), 0.0)
+    start = arm.neutral()
+    held = fp.inverse_kinematics(arm, None, "tool", target, start=start, mode="attitude-held")
+    with pytest.raises(fp.PoseOutOfReach) as caught:
+        fp.inverse_kinematics(arm, None, "tool", target, start=start, mode=mode)
+    found = caught.value.held_base
+    assert found.reached
+    end = Motion(arm, Mode(mode), start, held, np.zeros((2, 3))).configurations()[-1]
+    missed = np.linalg.norm(pose_of(arm, end, "tool")[0] - target)
+    assert 0.1 < found.position_missed <= missed + 1e-6
+    assert 0.1 < found.rotation < np.pi
+    assert "within reach of a held base" in str(caught.value)
+    assert "another seed" in str(caught.value)
+    far = tuple(3.0 * np.array(target))
+    with pytest.raises(fp.PoseOutOfReach) as caught:
+        fp.inverse_kinematics(arm, None, "tool", far, start=start, mode=mode)
+    assert not caught.value.held_base.reached
+    shoulder = np.array([SHOULDER, 0.0, 0.0])
+    beyond = np.linalg.norm(far - shoulder) - (UPPER + FORE)
+    assert caught.value.held_base.position_missed == pytest.approx(beyond, abs=1e-3)
+    assert "seed" not in str(caught.value)
+
+
+def test_the_error_says_whether_the_position_alone_is_reached():
+    arm = planar_arm(1e8)
+    position, _ = pose_of(arm, arm.configuration(joints={"shoulder": 0.4, "elbow": -0.8}), "tool")
+    with pytest.raises(fp.PoseOutOfReach, match="leave out the attitude") as caught:
+        fp.inverse_kinematics(
+            arm, None, "tool", position, (0.2, 0.0, 0.3), start=arm.neutral(), mode="attitude-held"
+        )
+    assert caught.value.without_attitude
+    assert caught.value.held_base is None
+
+
 def test_an_attitude_out_of_the_plane_is_missed_by_its_angle():
     arm = planar_arm(1e8)
     position, _ = pose_of(arm, arm.configuration(joints={"shoulder": 0.4, "elbow": -0.8}), "tool")

@@ -44,9 +44,24 @@ def test_without_a_lattice_it_is_the_default_one(robot):
         assert fp.Problem(robot, fp.Scene(), robot.neutral(), goal, **given).lattice == fp.Lattice()
 
 
-def test_problems_are_equal_only_to_themselves(problem):
-    assert problem == problem
-    assert problem != replace(problem)
+def test_problems_are_equal_by_content(problem):
+    assert problem == replace(problem, scene=fp.Scene(problem.scene.centers, problem.scene.radii))
+    assert hash(problem) == hash(replace(problem))
+    assert problem != replace(problem, delta=2.0)
+    assert problem != replace(problem, scene=fp.Scene())
+    assert problem != "problem"
+
+
+@pytest.mark.parametrize("name", ["delta", "length_unit", "clearance_cap", "rotation_weight"])
+def test_weights_whose_products_overflow_are_refused_by_name(problem, name):
+    with pytest.raises(fp.InvalidInput, match=rf"^{name}: got 1e\+308; .*at most 1e\+09"):
+        replace(problem, **{name: 1e308})
+
+
+def test_a_joint_that_travels_over_many_turns_is_refused(problem):
+    axis = fp.PostureAxis({"left_1": 1e6}, 1, 0.1)
+    with pytest.raises(fp.InvalidInput, match=r"postures\.0, displacement.*at most 500 rad"):
+        replace(problem, lattice=fp.Lattice(4, postures=[axis]))
 
 
 def test_replace_checks_again(problem):

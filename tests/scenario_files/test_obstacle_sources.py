@@ -70,6 +70,9 @@ def test_generators_stand_in_tables_of_their_own(tmp_path):
     )
     assert np.array_equal(found.centers, expected.centers)
     assert np.array_equal(found.radii, expected.radii)
+    names = ["obstacles.0", "belts.0", "scatters.0", "trusses.0", "gates.0"]
+    assert [name for name, _ in found.sources] == names
+    assert [name for name, _ in expected.sources[1:]] == ["belt", "scatter", "truss", "gate"]
 
 
 def test_obstacles_come_from_files_beside_the_scenario(tmp_path, monkeypatch):

@@ -1,6 +1,7 @@
 """Scenes: sums and how they are printed."""
 
 import numpy as np
+import pytest
 
 import ffsr_plan as fp
 
@@ -19,3 +20,21 @@ def test_a_scene_is_printed_as_number_and_extent():
     assert "x -1 to 5 m" in scene._repr_html_()
     assert "empty" in fp.Scene()._repr_html_()
     assert "0.5 m" in fp.Scene([[0, 0, 0]], [1.0], 0.5)._repr_html_()
+
+
+def test_spheres_keep_what_they_come_from(tmp_path):
+    part = fp.Scene([[0, 0, 0], [1, 0, 0]], [1, 1]).named("panel.stl")
+    plain = fp.Scene([[2, 0, 0]], [1])
+    scene = plain + plain + part + fp.Scene() + part.named("other.obj")
+    names = ["", "", "panel.stl", "panel.stl", "other.obj", "other.obj"]
+    assert [scene.source_of(k) for k in range(6)] == names
+    assert scene.sources == (("", 2), ("panel.stl", 2), ("other.obj", 2))
+    assert (plain + plain).sources == fp.Scene().named("x").sources == ()
+    scene.to_csv(tmp_path / "spheres.csv")
+    assert fp.Scene.from_csv(tmp_path / "spheres.csv").sources == (("spheres.csv", 6),)
+
+
+@pytest.mark.parametrize("sources", [3, [("a",)], [(1, 1)], [("a", -1)], [("a", 2)], [("a", 0.5)]])
+def test_sources_that_do_not_fit_the_spheres_are_refused(sources):
+    with pytest.raises(fp.InvalidInput, match="scene sources"):
+        fp.Scene([[0, 0, 0]], [1], sources=sources)

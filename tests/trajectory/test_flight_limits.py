@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.loading import robot_from_urdf
+from ffsr_plan.trajectory.flight_limits import refuse_limits_without_actuator
 from ffsr_plan.trajectory.straight_runs import straight_runs
 from tests.helpers.random_motions import USUAL, bent_motion, flown, read
 
@@ -95,3 +98,29 @@ def test_a_plan_that_leads_nowhere_has_no_time_law(robot):
     q = robot.configuration()
     with pytest.raises(fp.InvalidInput, match="nothing moves"):
         flown(Motion(robot, "free-flying", q, q, np.zeros((4, 3))), **USUAL)
+
+
+LIMITS = dict.fromkeys(
+    (
+        "base_velocity", "thruster_acceleration", "thruster_jerk", "velocity_jump",
+        "turn_velocity", "turn_acceleration",
+    )
+)  # fmt: skip
+LACKING = {
+    "free-flying": ["turn_velocity", "turn_acceleration"],
+    "attitude-held": [],
+    "free-floating": list(LIMITS),
+}
+
+
+@pytest.mark.parametrize("mode", LACKING)
+def test_a_limit_of_what_a_mode_does_not_have_is_refused(mode):
+    refuse_limits_without_actuator(Mode(mode), **LIMITS)
+    for name in LIMITS:
+        if name in LACKING[mode]:
+            with pytest.raises(
+                InvalidInput, match=rf"^{name}: got 0\.1; allowed: none in the mode"
+            ):
+                refuse_limits_without_actuator(Mode(mode), **LIMITS | {name: 0.1})
+        else:
+            refuse_limits_without_actuator(Mode(mode), **LIMITS | {name: 0.1})

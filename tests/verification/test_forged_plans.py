@@ -16,7 +16,10 @@ from tests.helpers.urdf_builders import random_robot
 def test_full_verification_of_one_plan(fig2a_plan):
     report = fig2a_plan.verify()
     assert report.ok
-    assert report.samples >= 40 * 2000
+    assert report.samples >= 40 * 50 + 1
+    assert report.largest_gap == 0.0
+    assert report.clearance_bound > fig2a_plan.certificate.least_clearance - 1e-6
+    assert report.clearance_bound <= report.least_clearance
     assert report.clearance_error < 1e-12
     assert report.objective_error < 1e-12
     assert report.least_self_separation > 0.0
@@ -126,3 +129,93 @@ def test_verification_notices_arms_that_pass_through_each_other(robot):
     report = fp.plan(problem, fp.LatticeOptimum()).verify(100)
     assert not report.ok
     assert "two links touch" in " ".join(report.problems)
+
+
+@pytest.mark.parametrize(
+    ("changes", "complaint"),
+    [
+        ({"lattice_objective": 1.001}, "F on the lattice is"),
+        ({"optimum": 0.0}, "the optimum is below F of any path"),
+    ],
+)
+def test_verification_notices_wrong_figures_of_the_lattice(fig2a_plan, changes, complaint):
+    changed = {name: getattr(fig2a_plan, name) * factor for name, factor in changes.items()}
+    report = replace(fig2a_plan, **changed).verify(5)
+    assert complaint in " ".join(report.problems)
+
+
+@pytest.fixture(scope="module")
+def small_plans():
+    """One on the lattice, one refined, of a problem whose optimum is not straight."""
+    robot = fp.load_robot("planar_dual_arm")
+    problem = fp.Problem(
+        robot, fp.Scene([[2.0, 0.3, 0.0]], [0.2]), robot.configuration(),
+        robot.configuration((4.0, 0.0, 0.0)), lattice=fp.Lattice(8, fp.Axis(8, 0.25)), delta=0.5,
+    )  # fmt: skip
+    return [fp.plan(problem, fp.LatticeOptimum(), refine=refine) for refine in (False, True)]
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_nodes_that_contradict_the_figures_are_noticed(small_plans, which):
+    plan = small_plans[which]
+    assert plan.verify(5).ok
+    for layer in (1, 4, 8):
+        nodes = np.array(plan.nodes)
+        nodes[layer] += 1
+        assert not replace(plan, nodes=frozen(nodes)).verify(5).ok
+
+
+def test_a_base_outside_the_window_is_noticed(small_plans):
+    plan = small_plans[1]
+    offsets = np.zeros((9, 3))
+    offsets[4, 2] = 0.01
+    report = replace(plan, motion=plan.motion.displaced(offsets)).verify(5)
+    assert "the base leaves the window of the lattice" in report.problems
+
+
+def test_an_exact_planner_whose_path_is_not_the_optimum_is_noticed(small_plans):
+    report = replace(small_plans[0], optimum=small_plans[0].optimum * 0.99).verify(5)
+    assert "the optimum is not F of the exact planner's own path" in report.problems
+
+
+def test_a_report_says_what_it_did_not_check(small_plans):
+    told = " ".join(small_plans[1].verify(5).not_checked)
+    assert "optimum" in told
+    assert "history" in told
+    assert "the refined one was checked" in told
+    assert "the refined one" not in " ".join(small_plans[0].verify(5).not_checked)
+
+
+def test_a_claim_beyond_the_true_clearance_is_not_confirmed(small_plans):
+    plan = small_plans[1]
+    true = plan.verify(500).least_clearance
+    for claim, fine in ((true - 1e-3, True), (true + 1e-5, False), (0.0, True)):
+        certificate = plan.certificate._replace(least_clearance=claim)
+        assert replace(plan, certificate=certificate).verify(3).ok == fine
+
+
+def test_a_plan_far_from_the_origin_is_the_same_plan(robot):
+    figures = []
+    for far in (0.0, 98_765.0):
+        place = np.array([far, -far, 0.3 * far])
+        start = robot.configuration(place)
+        goal = robot.configuration(place + np.array([3.0, 0.0, 0.0]), joints={"left_1": 1.0})
+        for mode in ("free-flying", "attitude-held", "free-floating"):
+            end = robot.assemble(start[:3] if mode == "free-floating" else goal[:3],
+                                 goal[3:7], goal[7:])  # fmt: skip
+            scene = fp.Scene([place + np.array([1.5, 2.0, 0.1])], [0.2])
+            problem = fp.Problem(robot, scene, start, end, mode, fp.Lattice(10), delta=0.1)
+            report = fp.plan(problem).verify()
+            assert report.ok, (far, mode, report.problems)
+            figures.append((report.least_clearance, report.least_self_separation))
+    assert np.allclose(figures[:3], figures[3:], atol=1e-9)
+
+
+def test_progress_is_told_up_to_the_end(small_plans):
+    told = []
+    small_plans[0].verify(2000, told.append)
+    assert len(told) > 5
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    with pytest.raises(fp.InvalidInput, match="samples"):
+        small_plans[0].verify(10**8)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 _FOLDER = Path(__file__).parent
+_UNSAFE = re.compile("[<>&\u2028\u2029\ud800-\udfff]")
 
 
 def html_page(name: str, data: dict[str, Any]) -> str:
@@ -30,13 +32,26 @@ def html_page(name: str, data: dict[str, Any]) -> str:
         "<!--PANELS-->": _read(_FOLDER / f"{name}.html"),
         "/*STAGE*/": _read(_FOLDER / "stage.js"),
         "/*SCRIPT*/": _read(_FOLDER / f"{name}.js"),
-        "/*MESHCAT*/": _read(bundle).replace("</script", "<\\/script"),
-        "/*DATA*/": json.dumps(data, ensure_ascii=False).replace("</", "<\\/"),
+        "/*MESHCAT*/": _read(bundle).replace("</script", "<\\/script").replace("<!--", "<\\!--"),
+        "/*DATA*/": script_literal(data),
     }  # data last, so that a title that contains a placeholder stays as it is
     text = _read(_FOLDER / "frame.html")
     for placeholder, part in parts.items():
         text = text.replace(placeholder, part)
     return text
+
+
+def script_literal(data: object) -> str:
+    """JSON text of data that may stand in a script of a page, whatever texts it holds.
+
+    The characters by which a script could end, a comment of HTML begin or end, or a line of a
+    script break are written as escapes, and so are halves of surrogate pairs.
+
+    Args:
+        data: JSON values.
+    """
+    text = json.dumps(data, ensure_ascii=False)
+    return _UNSAFE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
 def _read(path: Path) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -39,14 +40,15 @@ class AntSystem(LatticePlanner):
     """
 
     name: ClassVar[str] = "ant-system"
+    bytes_per_edge: ClassVar[float] = 40.0  # pheromone, roulettes, ants and what they lay
 
     ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
-    cycles: Annotated[int, WholeNumber(at_least=1)] = 242
-    alpha: Annotated[float, Number(at_least=0.0)] = 1.0
-    beta: Annotated[float, Number(at_least=0.0)] = 5.0
+    cycles: Annotated[int, WholeNumber(at_least=1, at_most=1_000_000)] = 242
+    alpha: Annotated[float, Number(at_least=0.0, at_most=40.0)] = 1.0
+    beta: Annotated[float, Number(at_least=0.0, at_most=40.0)] = 5.0
     rho: Annotated[float, Number(above=0.0, below=1.0)] = 0.526
-    Q: Annotated[float, Number(above=0.0)] = 320.0
-    C: Annotated[float, Number(above=0.0)] = 10.0
+    Q: Annotated[float, Number(at_least=1e-9, at_most=1e9)] = 320.0
+    C: Annotated[float, Number(at_least=1e-9, at_most=1e9)] = 10.0
 
     def search(
         self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None
@@ -67,36 +69,34 @@ class AntSystem(LatticePlanner):
         records: list[tuple[float, float, float, int]] = []
         best, best_path = np.inf, np.zeros(m + 1, dtype=np.int64)
         interrupted = False
-        try:
-            for cycle in range(1, self.cycles + 1):
-                paths = walk.tours(tau)
-                costs = edge_costs[paths[:, :-1], paths[:, 1:]].sum(axis=1)
-                costs += node_costs[along, paths].sum(axis=1)
-                leader = int(np.argmin(costs))
-                if costs[leader] < best:
-                    best, best_path = float(costs[leader]), paths[leader].copy()
-                edges = (along[:, :-1], paths[:, :-1], paths[:, 1:])
-                deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
-                tau *= self.rho
-                np.add.at(tau, edges, deposit)
-                np.maximum(tau, _LEAST_PHEROMONE, out=tau)
-                np.add.at(laid, edges, deposit)
-                np.add.at(walked, edges, 1)
-                distinct = len(np.unique(paths, axis=0))
-                records.append((best, float(costs[leader]), float(np.mean(costs)), distinct))
-                if monitor.on_cycle is not None:
-                    counts = np.zeros((m + 1, n), dtype=np.int64)
-                    np.add.at(counts, (along, paths), 1)
-                    monitor.on_cycle(
-                        Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau)
-                    )
-                interrupted = monitor.expired() and distinct > 1 and cycle < self.cycles
-                if distinct == 1 or interrupted:
-                    break
-        except KeyboardInterrupt:
-            interrupted = True
-            if not records:
-                raise PlanningError("interrupted before the first cycle was done") from None
+        for cycle in range(1, self.cycles + 1):
+            paths = walk.tours(tau, monitor.stop_requested)
+            if paths is None:
+                interrupted = True
+                break
+            costs = edge_costs[paths[:, :-1], paths[:, 1:]].sum(axis=1)
+            costs += node_costs[along, paths].sum(axis=1)
+            leader = int(np.argmin(costs))
+            if costs[leader] < best:
+                best, best_path = float(costs[leader]), paths[leader].copy()
+            edges = (along[:, :-1], paths[:, :-1], paths[:, 1:])
+            deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
+            tau *= self.rho
+            np.add.at(tau, edges, deposit)
+            np.maximum(tau, _LEAST_PHEROMONE, out=tau)
+            np.add.at(laid, edges, deposit)
+            np.add.at(walked, edges, 1)
+            distinct = len(np.unique(paths, axis=0))
+            records.append((best, float(costs[leader]), float(np.mean(costs)), distinct))
+            if monitor.on_cycle is not None:
+                counts = np.zeros((m + 1, n), dtype=np.int64)
+                np.add.at(counts, (along, paths), 1)
+                monitor.on_cycle(Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau))
+            interrupted = monitor.expired() and distinct > 1 and cycle < self.cycles
+            if distinct == 1 or interrupted:
+                break
+        if not records:
+            raise PlanningError("stopped before the first cycle was done")
         trails = _trails(walked, laid, tau)
         return SearchResult(
             frozen(best_path), History.of_rows(np.array(records)), trails, interrupted
@@ -123,8 +123,12 @@ class Walk:
         self._changed = np.ones((m, n), dtype=bool)
         self._paths = np.full((settings.ants, m + 1), roadmap.lattice.origin, dtype=np.int64)
 
-    def tours(self, tau: Array) -> IntArray:
+    def tours(self, tau: Array, stop_requested: Callable[[], bool] = bool) -> IntArray | None:
         """(ants, m + 1) free paths drawn by Eq. 11; valid until the next call.
+
+        Args:
+            tau: (m, n, n) pheromone.
+            stop_requested: asked after each proof; if so, there are no paths.
 
         Raises:
             NoPath: the start has become a dead end.
@@ -163,6 +167,8 @@ class Walk:
                 close_refused(
                     layer, roadmap.status, self._open_edges, self._open_counts, self._changed
                 )
+            if stop_requested():
+                return None
 
 
 def _trails(walked: IntArray, laid: Array, tau: Array) -> Trails:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import numpy as np
@@ -19,7 +20,7 @@ if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colon
 
 _LARGE_LAYER = 100  # nodes; from this size on pheromone lies on nodes, not on edges
 _MOST_TRAILS = 10_000  # edges whose trails are kept for pictures
-_CYCLES_PER_TIME_CHECK = 16  # cycles between two checks of the time
+_MOST_CYCLES_PER_CHECK, _SECONDS_PER_CHECK = 16, 0.05  # between two checks of time and Ctrl-C
 
 
 @settings
@@ -45,13 +46,14 @@ class MaxMinAntSystem(LatticePlanner):
     """
 
     name: ClassVar[str] = "max-min-ant-system"
+    bytes_per_edge: ClassVar[float] = 50.0  # those of the Ant System and visibility
 
     ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
-    cycles: Annotated[int, WholeNumber(at_least=1)] = 242
+    cycles: Annotated[int, WholeNumber(at_least=1, at_most=1_000_000)] = 242
     beta: Annotated[float, Number(at_least=0.0, at_most=40.0)] | None = None
     rho: Annotated[float, Number(above=0.0, below=1.0)] = 0.7
-    improved: Annotated[int, WholeNumber(at_least=0)] = 1
-    patience: Annotated[int, WholeNumber(at_least=0)] = 20
+    improved: Annotated[int, WholeNumber(at_most=100_000)] = 1
+    patience: Annotated[int, WholeNumber(at_most=1_000_000)] = 20
     cost_aware: Annotated[bool, Truth()] = True
     pheromone: Annotated[bool, Truth()] = True
 
@@ -75,19 +77,21 @@ class MaxMinAntSystem(LatticePlanner):
                 "no open edge at the start, but the roadmap has a path"
             )
         state = self._state(roadmap, open_edges)
-        until, stride = 0, 1 if monitor.on_cycle is not None else _CYCLES_PER_TIME_CHECK
-        interrupted = False
-        try:
-            while until < self.cycles and not interrupted:
-                until = min(until + stride, self.cycles)
-                while kernel.run_cycles(rng, until, state) != kernel.DONE:
-                    if not roadmap.prove_path(state.candidate):
-                        _close_refused(roadmap, state, open_counts)
-                if monitor.on_cycle is not None:
-                    monitor.on_cycle(_report(state, self.cycles))
-                interrupted = monitor.expired() and until < self.cycles
-        except KeyboardInterrupt:
-            interrupted = True
+        until, stride, interrupted = 0, 1, False
+        while until < self.cycles and not interrupted:
+            begin, until = time.monotonic(), min(until + stride, self.cycles)
+            while kernel.run_cycles(rng, until, state) != kernel.DONE:
+                if not roadmap.prove_path(state.candidate):
+                    _close_refused(roadmap, state, open_counts)
+                found = np.isfinite(state.values[kernel.BEST])
+                if monitor.stop_requested() or (found and monitor.past_deadline()):
+                    interrupted = True
+                    break
+            if monitor.on_cycle is not None and not interrupted:
+                monitor.on_cycle(_report(state, self.cycles))
+            interrupted |= monitor.expired() and until < self.cycles
+            if monitor.on_cycle is None and time.monotonic() - begin < _SECONDS_PER_CHECK:
+                stride = min(2 * stride, _MOST_CYCLES_PER_CHECK)
         if not np.isfinite(state.values[kernel.BEST]):
             raise (None if interrupted else roadmap.no_path()) or PlanningError(
                 f"none of {self.ants} ants found a free path in {state.counters[kernel.CYCLE]} "

@@ -8,6 +8,9 @@ clearances behind it, so that most shifts are rejected before any distance is co
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +31,9 @@ from ffsr_plan.search.postures.cost_kernels import (
     take_edges,
     visit,
 )
+
+_FIRST_PART = 64  # shifts of an annealing between two checks of time and Ctrl-C, at first
+_SECONDS_OF_A_PART = 0.05  # up to which the next part is twice as long
 
 
 @kernel
@@ -89,7 +95,7 @@ def trial_cost(
             compose(change, old[i], new[i])
     else:
         new[last:] = old[last:]
-    total = attitude_cost(grid.reach_attitude, new[m], grid.goal, weight)
+    total = attitude_cost(grid.reach_attitude, new[m], grid.goal, grid.free_error, weight)
     for i in range(m):
         total += trial.lengths[i] if first - 1 <= i < last else current.lengths[i]
     for i in range(1, first):
@@ -152,7 +158,18 @@ def shift(
     return True
 
 
-@kernel
+class Annealing(NamedTuple):
+    """The state of an annealing between two of its parts."""
+
+    current: CostedPath
+    trial: CostedPath
+    """Equal to `current` in its nodes."""
+    levels: Array
+    """(3,) cost of the best path [m], of the current one, and weight of the goal attitude [m]."""
+    best_path: IntArray
+    """(m + 1, 2)."""
+
+
 def anneal(
     grid: PostureGrid,
     rng: np.random.Generator,
@@ -162,8 +179,11 @@ def anneal(
     cold: float,
     weights: Array,
     best_path: IntArray,
+    stop_requested: Callable[[], bool] = bool,
 ) -> float:
     """Shift whole segments of a path by one, along an axis or in time, as the temperature falls.
+
+    The result is the same however the annealing is divided into parts.
 
     Args:
         grid: the lattice.
@@ -175,17 +195,44 @@ def anneal(
         weights: (2,) of a radian by which the goal attitude is missed [m]: at the beginning, and
             from half of the iterations on, by which the best path is judged.
         best_path: (m + 1, 2) the best path, filled in.
+        stop_requested: asked several times a second; whether to end with the best path so far.
 
     Returns:
         The cost of the best path [m].
     """
-    m, workspace = len(path) - 1, new_workspace()
+    state = Annealing(uncosted_path(path), uncosted_path(path), np.empty(3), best_path)
+    state.levels[:] = path_cost(grid, state.current, weights[1]), np.inf, weights[0]
+    best_path[:] = path
+    done, part = 0, _FIRST_PART
+    while done < iterations:
+        begin, until = time.monotonic(), min(done + part, iterations)
+        anneal_part(grid, rng, state, done, until, iterations, hot, cold, weights)
+        done = until
+        if stop_requested():
+            break
+        part = 2 * part if time.monotonic() - begin < _SECONDS_OF_A_PART else part
+    return float(state.levels[0])
+
+
+@kernel
+def anneal_part(
+    grid: PostureGrid,
+    rng: np.random.Generator,
+    state: Annealing,
+    begin: int,
+    end: int,
+    iterations: int,
+    hot: float,
+    cold: float,
+    weights: Array,
+) -> None:
+    """The shifts `begin` .. `end` - 1 of an annealing; see `anneal`."""
+    current, trial, best_path = state.current, state.trial, state.best_path
+    m, workspace = len(best_path) - 1, new_workspace()
     successors, neighbours, axes = grid.successors, grid.neighbours, grid.indices.shape[1]
     kinds = 2 * axes + neighbours.shape[1] + 2
-    current, trial = uncosted_path(path), uncosted_path(path)
-    best, now, weight = path_cost(grid, current, weights[1]), np.inf, weights[0]
-    best_path[:] = path
-    for n in range(iterations):
+    best, now, weight = state.levels[0], state.levels[1], state.levels[2]
+    for n in range(begin, end):
         done = n / iterations
         if n % 64 == 0:
             weight = weights[0] * (weights[1] / weights[0]) ** min(1.0, 2.0 * done)
@@ -208,4 +255,4 @@ def anneal(
         if done >= 0.5 and cost < best:
             best = cost
             best_path[:] = current.nodes
-    return best
+    state.levels[0], state.levels[1], state.levels[2] = best, now, weight

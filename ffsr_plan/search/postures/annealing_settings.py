@@ -7,7 +7,8 @@ from typing import Annotated
 from ffsr_plan.core.setting_rules import Number, Truth, WholeNumber
 from ffsr_plan.core.settings import settings
 
-PositivePair = tuple[Annotated[float, Number(above=0.0)], Annotated[float, Number(above=0.0)]]
+_Positive = Annotated[float, Number(at_least=1e-9, at_most=1e9)]
+PositivePair = tuple[_Positive, _Positive]
 _SHIFTS_TO_TURN, _SHIFTS_TO_PASS = 3000, 1000
 
 
@@ -34,14 +35,14 @@ class AnnealingSettings:
     """
 
     ants: Annotated[int, WholeNumber(at_least=1, at_most=100_000)] = 30
-    cycles: Annotated[int, WholeNumber(at_least=1)] = 242
+    cycles: Annotated[int, WholeNumber(at_least=1, at_most=1_000_000)] = 242
     pheromone: Annotated[bool, Truth()] = True
-    detour_scale: Annotated[float, Number(above=0.0)] = 0.15
+    detour_scale: _Positive = 0.15
     rho: Annotated[float, Number(above=0.0, below=1.0)] = 0.9
     least_pheromone: Annotated[float, Number(above=0.0, below=1.0)] = 0.02
-    patience: Annotated[int, WholeNumber(at_least=1)] = 30
-    descent_shifts: Annotated[int, WholeNumber(at_least=0)] = 200
-    annealing_shifts: Annotated[int, WholeNumber(at_least=0)] | None = None
+    patience: Annotated[int, WholeNumber(at_least=1, at_most=1_000_000)] = 30
+    descent_shifts: Annotated[int, WholeNumber(at_most=1_000_000)] = 200
+    annealing_shifts: Annotated[int, WholeNumber(at_most=1_000_000)] | None = None
     temperatures: tuple[PositivePair, ...] = ((1.0, 0.03), (1.0, 1e-3), (0.3, 1e-3))
     attitude_weights: PositivePair = (5.0, 100.0)
 

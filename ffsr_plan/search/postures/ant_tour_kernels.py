@@ -19,7 +19,6 @@ from ffsr_plan.search.postures.cost_kernels import (
 )
 
 
-@kernel
 def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
     """(m + 1, b, n) least cost [m] from each node to the goal, every layer at one attitude.
 
@@ -27,18 +26,31 @@ def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
         grid: the lattice.
         nominal: (m + 1, 4) the attitudes.
     """
+    m, count, offsets = len(grid.step_rotations), len(grid.successors), len(grid.across)
+    ahead, own = np.full((m + 1, offsets, count), np.inf), np.empty((offsets, count))
+    ahead[m, grid.origin[0], grid.origin[1]] = 0.0
+    for layer in range(m, -1, -1):  # in Python, so that Ctrl-C is received between two layers
+        add_layer(grid, nominal, layer, ahead, own)
+    return ahead
+
+
+@kernel
+def add_layer(grid: PostureGrid, nominal: Array, i: int, ahead: Array, own: Array) -> None:
+    """Work out the cost to go from one layer.
+
+    Args:
+        grid: the lattice.
+        nominal: (m + 1, 4) the attitudes.
+        i: the layer; the one after it is worked out.
+        ahead: (m + 1, b, n) of `cost_to_go`, of which layer `i` is filled in.
+        own: (b, n) costs of the nodes of the layer after it [m]; then those of layer `i`.
+    """
     m, count = len(grid.step_rotations), len(grid.successors)
     offsets, steps = len(grid.across), grid.successors.shape[1]
     workspace, delta_d, free = new_workspace(), grid.delta_d, is_free(grid)
-    ahead = np.full((m + 1, offsets, count), np.inf)
-    own = np.empty((offsets, count))
-    for i in range(m, -1, -1):
+    if i < m:
         for b in range(offsets):
             for p in range(count):
-                if i == m:
-                    goal = grid.origin[0] == b and grid.origin[1] == p
-                    ahead[m, b, p] = 0.0 if goal else np.inf
-                    continue
                 if not grid.allowed[i, p]:
                     continue
                 for step in range(steps):
@@ -52,18 +64,18 @@ def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
                                 delta_d, grid.across[b, b_on], grid.squared_steps[i, p, step]
                             )
                             ahead[i, b, p] = min(ahead[i, b, p], rest + length)
-        if i > 0:
-            for b in range(offsets):
-                for p in range(count):
-                    own[b, p] = 0.0
-                    if ahead[i, b, p] < np.inf and not free:
-                        frames, center = grid.frames[i, p], grid.centers[i, p]
-                        grid.queries[0] += 1
-                        clearance = clearance_at(
-                            grid.obstacles, frames, grid.places[i, b], center, nominal[i], workspace
-                        )
-                        own[b, p] = node_cost(grid.clearance_cost, clearance, i < m)
-    return ahead
+    if i == 0:
+        return
+    for b in range(offsets):
+        for p in range(count):
+            own[b, p] = 0.0
+            if ahead[i, b, p] < np.inf and not free:
+                frames, center = grid.frames[i, p], grid.centers[i, p]
+                grid.queries[0] += 1
+                clearance = clearance_at(
+                    grid.obstacles, frames, grid.places[i, b], center, nominal[i], workspace
+                )
+                own[b, p] = node_cost(grid.clearance_cost, clearance, i < m)
 
 
 @kernel

@@ -2,7 +2,8 @@
 
 The attitude at the end is the product of the base rotations over all joint steps. Its derivative by
 every inner corner, along every posture axis, comes from differences of the two steps beside the
-corner; of all displacements that close the error to first order the least one is taken.
+corner; of all displacements that close the error to first order the least one is taken. Where the
+full step does not reduce the error, a part of it is taken.
 """
 
 from __future__ import annotations
@@ -15,8 +16,9 @@ from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import SpaceRobot
 
 _DIFFERENCE = 1e-5  # of the finite differences, in units of the displacement
-_ITERATIONS = 6
-_TOLERANCE = 1e-7  # [rad]
+_ITERATIONS = 20
+_LEAST_STEP = 1.0 / 32.0  # of the full step
+_TOLERANCE = 1e-9  # [rad]
 
 
 def corrected(
@@ -41,18 +43,34 @@ def corrected(
     free = np.ones(directions[1:-1].shape[:2], dtype=np.bool_)
     if held is not None:
         free[held[1:-1]] = False
+    reaction, missed = _reaction_and_error(robot, path, start, goal)
     for _ in range(_ITERATIONS):
-        reaction = Reaction.along(robot, path)
-        reached = reaction.attitudes(start)[-1]
-        missed = rotations.log(rotations.multiply(rotations.inverse(reached), goal))
         if np.linalg.norm(missed) < _TOLERANCE:
             return path
         slope = attitude_slopes(robot, path, directions, reaction.increments)
-        inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, missed, free)
-        if inner is None:
+        share = 1.0
+        while share >= _LEAST_STEP:
+            inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, share * missed, free)
+            if inner is None:
+                return None
+            trial = np.vstack([path[:1], inner, path[-1:]])
+            reaction, rest = _reaction_and_error(robot, trial, start, goal)
+            if np.linalg.norm(rest) < np.linalg.norm(missed):
+                path, missed = trial, rest
+                break
+            share *= 0.5
+        else:
             return None
-        path[1:-1] = inner
     return None
+
+
+def _reaction_and_error(
+    robot: SpaceRobot, path: Array, start: Array, goal: Array
+) -> tuple[Reaction, Array]:
+    """The reaction along a path, and the rotation vector (3,) from its end to the goal [rad]."""
+    reaction = Reaction.along(robot, path)
+    reached = reaction.attitudes(start)[-1]
+    return reaction, rotations.log(rotations.multiply(rotations.inverse(reached), goal))
 
 
 def _within_limits(

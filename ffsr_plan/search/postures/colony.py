@@ -8,6 +8,7 @@ it really leads to.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from ffsr_plan.search.postures.posture_lattice_arrays import without_edge
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, Trails
 
 _BEST_LAYS_EVERY = 3  # cycles; in the others the best ant of the cycle lays pheromone
+_DEMANDED_WEIGHT = 4.0  # factor of the cost of a radian after a path that could not be corrected
 _LEAST_GAIN = 1e-9  # [m] by which a path has to be better to count as better
 
 
@@ -62,6 +64,7 @@ class PostureColony:
     ) -> None:
         self._lattice, self._settings, self._rng = lattice, settings, rng
         self.grid = grid
+        self._weights = np.array(settings.attitude_weights, dtype=np.float64)
         m, postures, steps = grid.step_rotations.shape[:3]
         offsets = len(grid.across)
         self._cost_to_go = cost_to_go(grid, _guiding_attitudes(lattice))
@@ -74,26 +77,35 @@ class PostureColony:
         self.best_cost = self.cost(self.best)
 
     def search(self, monitor: SearchMonitor) -> PosturePath:
-        """Run the ants, then the annealings. Ctrl-C and the monitor end both early."""
-        interrupted = False
-        try:
-            interrupted = self._run_ants(monitor) or self._run_annealings(monitor)
-        except KeyboardInterrupt:
-            interrupted = True
+        """Run the ants, then the annealings. The monitor ends both early."""
+        interrupted = self._run_ants(monitor) or self._run_annealings(monitor)
         history = History.of_rows(np.array(self._records, dtype=np.float64))
         return PosturePath(self.best, self.best_cost, history, self._trails(), interrupted)
 
     def cost(self, path: IntArray) -> float:
         """Cost of a path (m + 1, 2) [m]."""
-        weight = float(self._settings.attitude_weights[1])
-        return float(path_cost(self.grid, uncosted_path(path), weight))
+        return float(path_cost(self.grid, uncosted_path(path), float(self._weights[1])))
 
     def refuse(self, layer: int, path: IntArray) -> None:
         """Exclude the edge by which a path (m + 1, 2) leaves a layer."""
         self.grid = without_edge(self.grid, layer, path)
 
+    def demand(self, free_error: float) -> None:
+        """Let an error of the goal attitude cost more: four times as much, from `free_error` on.
+
+        Args:
+            free_error: what costs nothing [rad], unless less costs something already.
+        """
+        self.grid = self.grid._replace(free_error=min(self.grid.free_error, free_error))
+        self._weights = _DEMANDED_WEIGHT * self._weights
+
     def annealed(
-        self, path: IntArray, shifts: int, hot: float, cold: float
+        self,
+        path: IntArray,
+        shifts: int,
+        hot: float,
+        cold: float,
+        stop_requested: Callable[[], bool] = bool,
     ) -> tuple[IntArray, float]:
         """The best path of an annealing from `path`, and its cost [m].
 
@@ -102,28 +114,36 @@ class PostureColony:
             shifts: number of segment shifts to try.
             hot: temperature at the beginning [m].
             cold: temperature at the end [m].
+            stop_requested: asked several times a second; whether to end with what there is.
         """
-        weights = np.array(self._settings.attitude_weights)
-        return self._shifted(path, shifts, hot, cold, weights)
+        return self._shifted(path, shifts, hot, cold, self._weights, stop_requested)
 
     def _shifted(
-        self, path: IntArray, shifts: int, hot: float, cold: float, weights: Array
+        self,
+        path: IntArray,
+        shifts: int,
+        hot: float,
+        cold: float,
+        weights: Array,
+        stop_requested: Callable[[], bool],
     ) -> tuple[IntArray, float]:
         result = np.empty_like(path)
-        cost = anneal(self.grid, self._rng, path, shifts, hot, cold, weights, result)
-        return result, float(cost)
+        cost = anneal(
+            self.grid, self._rng, path, shifts, hot, cold, weights, result, stop_requested
+        )
+        return result, cost
 
     def _run_ants(self, monitor: SearchMonitor) -> bool:
         """Run cycles until none improves the path any more; whether the monitor ended them."""
         settings, stale = self._settings, 0
-        late_weights = np.full(2, settings.attitude_weights[1])
+        late_weights = np.full(2, self._weights[1])
         for _ in range(settings.cycles):
             paths, costs = self._tours()
             if not paths:
                 break
             leader = paths[int(np.argmin(costs))]
             improved, cost = self._shifted(
-                leader, settings.descent_shifts, 1e-3, 1e-4, late_weights
+                leader, settings.descent_shifts, 1e-3, 1e-4, late_weights, monitor.expired
             )
             stale += 1
             if cost < self.best_cost - _LEAST_GAIN:
@@ -174,7 +194,7 @@ class PostureColony:
         problem = self._lattice.problem
         shifts = len(self._walked) * self._settings.shifts_per_layer(problem.reach_attitude)
         for hot, cold in self._settings.temperatures:
-            path, cost = self.annealed(self.best, shifts, hot, cold)
+            path, cost = self.annealed(self.best, shifts, hot, cold, monitor.expired)
             if cost < self.best_cost - _LEAST_GAIN:
                 self.best, self.best_cost = path, cost
             self._records.append((self.best_cost, cost, cost, 1))

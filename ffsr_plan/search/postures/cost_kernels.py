@@ -20,7 +20,9 @@ from ffsr_plan.core.compilation import kernel
 
 COLLISION_COST = 3.0  # [m] of cost for a collision
 DEPTH_COST = 15.0  # [m] of cost for each metre of its depth
-FREE_ATTITUDE_ERROR = math.radians(0.5)  # error of the goal attitude that costs nothing
+FREE_ATTITUDE_ERROR = math.radians(0.5)
+"""Error of the goal attitude that costs nothing at first: the correction behind the search closes
+it."""
 
 
 class Obstacles(NamedTuple):
@@ -82,6 +84,8 @@ class PostureGrid(NamedTuple):
     """[m]."""
     reach_attitude: bool
     """Whether the goal attitude is to be reached."""
+    free_error: float
+    """Error of the goal attitude that costs nothing [rad]."""
     radii: Array
     """(m + 1, n) largest distance of any point of the shapes from the centre of rotation [m]."""
     queries: IntArray
@@ -229,11 +233,13 @@ def is_refused(refused: IntArray, layer: int, b: int, p: int, b_on: int, p_on: i
 
 
 @kernel
-def attitude_cost(reach_attitude: bool, quat: Array, goal: Array, weight: float) -> float:
-    """Cost [m] of the attitude at the goal, a radian of error costing `weight` [m]."""
+def attitude_cost(
+    reach_attitude: bool, quat: Array, goal: Array, free_error: float, weight: float
+) -> float:
+    """Cost [m] of the attitude at the goal, a radian beyond the free error costing `weight` [m]."""
     if not reach_attitude:
         return 0.0
-    return weight * max(0.0, angle_to(quat, goal) - FREE_ATTITUDE_ERROR)
+    return weight * max(0.0, angle_to(quat, goal) - free_error)
 
 
 @kernel
@@ -318,6 +324,8 @@ def path_cost(grid: PostureGrid, path: CostedPath, weight: float) -> float:
     path.least[:] = 0.0
     if not take_edges(grid, path, 0, m):
         return np.inf
-    error_cost = attitude_cost(grid.reach_attitude, path.quats[m], grid.goal, weight)
+    error_cost = attitude_cost(
+        grid.reach_attitude, path.quats[m], grid.goal, grid.free_error, weight
+    )
     total = np.sum(path.lengths) + error_cost
     return visit(grid, path, 1, m + 1, total, np.inf, workspace)

@@ -7,19 +7,24 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ffsr_plan.collision.contacts import named, start_in_collision
+from ffsr_plan.collision.distances import Nearest
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.errors import StartInCollision
+from ffsr_plan.core.errors import UnprovenPath
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.problem.advice import for_proof
 from ffsr_plan.problem.objective import objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.search.postures.attitude_correction import corrected
 from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
 
-ATTITUDE_TOLERANCE = math.radians(1.0)
-"""Largest goal attitude error [rad] of a plan whose final correction could not be proven."""
-_CORRECTIONS = 6  # attempts, each without the corners that the one before could not prove
+GOAL_TOLERANCE = 1e-8
+"""Largest goal attitude error [rad] of a plan: 100 m away from the base 1e-6 m."""
+CORRECTABLE = math.radians(1.0)
+"""Largest goal attitude error [rad] of a path on the lattice whose correction is attempted."""
+_CORRECTIONS = 12  # attempts, each without the corners that the one before could not prove
 
 
 class RefusedEdge(NamedTuple):
@@ -59,7 +64,7 @@ class PathProof(NamedTuple):
     @property
     def holds(self) -> bool:
         """Whether all edges are proven free and the goal attitude is reached."""
-        return not self.refused and self.attitude_error <= ATTITUDE_TOLERANCE
+        return not self.refused and self.attitude_error <= GOAL_TOLERANCE
 
 
 def corners(lattice: PostureLattice, path: IntArray) -> tuple[Array, Array]:
@@ -110,8 +115,12 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
     """The path with its goal attitude error closed where that can be proven; and Coal queries.
 
     Where the corrected path is refused, the corners beside the refused edge are left unchanged and
-    the others corrected. Without a proven correction the path is returned as it is.
+    the others corrected. If that is refused too, the attitude there has to stay, so that the
+    corners behind it are corrected only. Without a proven correction the path is returned as it is,
+    and so is one that is not free, needs no correction or misses the attitude by too much.
     """
+    if proof.refused or not GOAL_TOLERANCE < proof.attitude_error <= CORRECTABLE:
+        return proof, 0
     problem, motion = lattice.problem, proof.motion
     directions = displacements(problem, lattice.base.nominal.joint_values)
     held = np.zeros(len(motion.positions), dtype=np.bool_)
@@ -125,10 +134,13 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
             break
         other = prove_path(lattice, motion.positions, joints)
         queries += other.prover.queries
-        if other.holds and other.attitude_error < proof.attitude_error:
+        if other.holds:
             return other, queries
         for edge in other.refused:  # the original path has been proven there
-            held[max(edge.layer - 1, 0) : edge.layer + 3] = True
+            beside = slice(max(edge.layer - 1, 0), edge.layer + 3)
+            if held[beside].all():
+                beside = slice(edge.layer + 3)
+            held[beside] = True
     return proof, queries
 
 
@@ -136,7 +148,7 @@ def check_start(problem: Problem) -> None:
     """Check that the start touches nothing.
 
     Raises:
-        StartInCollision: with link, obstacle and depth.
+        StartInCollision: with all that touches.
     """
     start = problem.start
     motion = Motion(problem.robot, problem.mode, start, start, np.tile(start[:3], (2, 1)))
@@ -144,7 +156,28 @@ def check_start(problem: Problem) -> None:
     still = np.zeros(3)
     for near in (prover.nearest(0, still, still, 0.0), prover.nearest_links(0, 0.0)):
         if near.distance <= 0.0:
-            raise StartInCollision(near.link, near.obstacle, -near.distance)
+            raise start_in_collision(problem.robot, problem.scene, start)
+
+
+def unproven(problem: Problem, edge: RefusedEdge, cut_short: bool) -> UnprovenPath:
+    """The error for a path that could not be proven free.
+
+    Args:
+        problem: gives the scene and the lattice.
+        edge: the first refused edge.
+        cut_short: whether a time limit ended the search.
+    """
+    contact = named(problem.scene, Nearest(edge.distance, edge.link, edge.obstacle))
+    advice = for_proof(problem, cut_short, isinstance(edge.obstacle, str))
+    return UnprovenPath(
+        edge.layer + 1,
+        edge.link,
+        edge.obstacle,
+        edge.distance,
+        problem.lattice.divisions,
+        contact.source,
+        advice,
+    )
 
 
 def length_of(lattice: PostureLattice, motion: Motion) -> float:

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from ffsr_plan.core.arrays import IntArray, frozen
-from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput, UnprovenPath
+from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.certificate import Certificate, Counts
@@ -17,7 +17,7 @@ from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
 from ffsr_plan.search.postures.colony import PostureColony, PosturePath
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import (
-    ATTITUDE_TOLERANCE,
+    CORRECTABLE,
     PathProof,
     check_start,
     corners,
@@ -25,6 +25,7 @@ from ffsr_plan.search.postures.path_proof import (
     length_of,
     objective_of,
     prove_path,
+    unproven,
 )
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
@@ -34,6 +35,7 @@ from ffsr_plan.search.workers import run_on_workers
 _PROOF_ATTEMPTS = 25
 _SHIFTS_AFTER_REFUSAL = 500  # for each layer, in the annealing that goes on after a refused edge
 _TEMPERATURES_AFTER_REFUSAL = 0.05, 1e-3  # [m], of that annealing
+_LESS_FREE_ERROR = 0.25  # of an error that could not be corrected: what costs nothing from then on
 
 
 @settings
@@ -44,7 +46,8 @@ class PostureAnnealing(AnnealingSettings):
     segments does most of the work. Collisions and goal attitude error are penalised during the
     search, not forbidden. The best path is worked out exactly and proven edge by edge; a refused
     edge is excluded and the annealing goes on. Where a goal attitude is to be reached, a
-    Gauss-Newton correction of the joint path closes the remaining error, and is proven again.
+    Gauss-Newton correction of the joint path closes the remaining error, and is proven again. If
+    that fails, the annealing goes on, and errors of the goal attitude cost more.
 
     The settings are those of `AnnealingSettings`.
     """
@@ -70,7 +73,8 @@ class PostureAnnealing(AnnealingSettings):
         Raises:
             InvalidInput: no posture axes, axes that the robot does not have, or `refine=True`.
             StartInCollision: with link, obstacle and depth.
-            AttitudeOutOfReach: the arms were not found to bring about the goal's attitude.
+            AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; with
+                the `Solution` that misses it least.
             UnprovenPath: what was found could not be proven free.
             WorkerDied: a worker process ended without a result.
         """
@@ -83,26 +87,20 @@ class PostureAnnealing(AnnealingSettings):
             return self._best_of_colonies(problem, rng, request)
         lattice = PostureLattice(problem)
         check_start(problem)
+        monitor = request.monitor()
         colony = PostureColony(lattice, posture_grid(lattice), self, rng)
-        result = colony.search(request.monitor())
-        path, queries, refused = result.path, 0, 0
-        shifts = _SHIFTS_AFTER_REFUSAL * problem.lattice.divisions
+        result = colony.search(monitor)
+        proofs = _Proofs(lattice, colony)
+        path = result.path
         for _ in range(_PROOF_ATTEMPTS):
-            proof, proven_path = prove_path(lattice, *corners(lattice, path)), path
-            queries += proof.prover.queries
-            if proof.holds or result.interrupted:
+            proof = prove_path(lattice, *corners(lattice, path))
+            corrected, spent = corrected_proof(lattice, proof)
+            proofs.take(path, proof, corrected, spent)
+            if corrected.holds or result.interrupted or monitor.expired():
                 break
-            for edge in proof.refused:
-                colony.refuse(edge.layer, path)
-                refused += 1
-            path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL)
-        _check_proof(problem, proof)
-        lattice_objective = objective_of(lattice, proof)
-        if problem.reach_attitude:
-            proof, spent = corrected_proof(lattice, proof)
-            queries += spent
-        counts = Counts(len(path) - 1, refused, len(path), queries - len(path))
-        return _solution(lattice, proven_path, proof, counts, result, lattice_objective)
+            shifts = _SHIFTS_AFTER_REFUSAL * problem.lattice.divisions
+            path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL, monitor.expired)
+        return proofs.solution(result)
 
     def _best_of_colonies(
         self, problem: Problem, rng: np.random.Generator, request: SearchRequest
@@ -111,21 +109,72 @@ class PostureAnnealing(AnnealingSettings):
         if request.workers == 1:
             outcomes = _run_colonies(job, rngs, request.monitor())
         else:
-            outcomes = run_on_workers(_run_colonies, job, rngs, request.workers, request.time_limit)
+            outcomes = run_on_workers(_run_colonies, job, rngs, request)
         solutions = [outcome for outcome in outcomes if isinstance(outcome, Solution)]
         if not solutions:
-            raise next(outcome for outcome in outcomes if isinstance(outcome, FfsrPlanError))
+            errors = [outcome for outcome in outcomes if isinstance(outcome, FfsrPlanError)]
+            missed = [error for error in errors if isinstance(error, AttitudeOutOfReach)]
+            raise min(missed, key=lambda error: error.missed) if missed else errors[0]
         return min(solutions, key=lambda solution: solution.objective)
 
 
-def _check_proof(problem: Problem, proof: PathProof) -> None:
-    """Raise `UnprovenPath` or `AttitudeOutOfReach` if the proof does not hold."""
-    if proof.refused:
-        layer, link, obstacle, distance = proof.refused[0]
-        raise UnprovenPath(layer + 1, link, obstacle, distance, problem.lattice.divisions)
-    if proof.attitude_error > ATTITUDE_TOLERANCE:
-        wanted = float(angle_between(problem.start[3:7], problem.goal[3:7]))
-        raise AttitudeOutOfReach(wanted, proof.attitude_error)
+class _Proofs:
+    """Proofs of the paths that a colony finds, one after another, and the best one so far.
+
+    A refused edge is excluded from the colony's lattice. A path that is free and cannot be
+    corrected to the goal attitude makes the colony look for one that misses it by less.
+    """
+
+    def __init__(self, lattice: PostureLattice, colony: PostureColony) -> None:
+        self._lattice, self._colony = lattice, colony
+        self._refused = self._queries = 0
+        self._last: PathProof | None = None
+        self._best: tuple[IntArray, PathProof, float] | None = None
+        # path, proof of its motion, F on the lattice; of the least goal attitude error
+
+    def take(self, path: IntArray, proof: PathProof, corrected: PathProof, spent: int) -> None:
+        """Take note of a path (m + 1, 2).
+
+        Args:
+            path: the path.
+            proof: of it.
+            corrected: of its correction, or the same as `proof`.
+            spent: Coal queries of the correction.
+        """
+        self._last = proof
+        self._queries += proof.prover.queries + spent
+        for edge in proof.refused:
+            self._colony.refuse(edge.layer, path)
+            self._refused += 1
+        if proof.refused:
+            return
+        if not corrected.holds and proof.attitude_error <= CORRECTABLE:
+            self._colony.demand(_LESS_FREE_ERROR * proof.attitude_error)
+        if self._best is None or corrected.attitude_error < self._best[1].attitude_error:
+            self._best = path, corrected, objective_of(self._lattice, proof)
+
+    def solution(self, result: PosturePath) -> Solution:
+        """The best path.
+
+        Args:
+            result: what the colony found first.
+
+        Raises:
+            UnprovenPath: no path was proven free.
+            AttitudeOutOfReach: none that was proven free meets the goal attitude; with the best.
+        """
+        problem = self._lattice.problem
+        if self._best is None:
+            assert self._last is not None
+            raise unproven(problem, self._last.refused[0], result.interrupted)
+        path, proof, on_lattice = self._best
+        m = len(path) - 1
+        counts = Counts(m, self._refused, m + 1, self._queries - m - 1)
+        solution = _solution(self._lattice, path, proof, counts, result, on_lattice)
+        if not proof.holds:
+            wanted = float(angle_between(problem.start[3:7], problem.goal[3:7]))
+            raise AttitudeOutOfReach(wanted, proof.attitude_error, solution)
+        return solution
 
 
 def _solution(
@@ -174,8 +223,7 @@ def _run_colonies(
             outcomes.append(planner.solve(problem, rng, request))
         except FfsrPlanError as error:
             outcomes.append(error)
-        last = outcomes[-1]
-        if isinstance(last, Solution) and last.interrupted and not monitor.past_deadline():
+        if monitor.stop_requested():
             break  # by Ctrl-C: no more colonies
     return outcomes
 

@@ -7,6 +7,7 @@ most one step along each axis; base offsets change as they like.
 
 from __future__ import annotations
 
+import math
 from functools import cached_property
 from itertools import product
 
@@ -17,14 +18,19 @@ from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.core.compilation import notify_after
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.cost_estimate import check_memory, check_work
 from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.problem.problem import Problem
 
-MOST_STEPS = 2_000_000  # joint edges; some hundred bytes each
+_BYTES_PER_STEP = 100  # rotation, squared length and pheromone of a joint step
+_BYTES_PER_SHAPE = 450  # placements of a shape at a node
+_BYTES_PER_OFFSET_EDGE = 30  # pheromone, ants and what they lay
+_JOINT_STEP = 0.1  # [rad or m] for which the base reaction is worked out at eight points
+_SECONDS_PER_POINT = 1e-5  # for each joint, base reaction at one point
+_SECONDS_PER_PAIR = 4e-6  # distance of two links
 
 
 class PostureLattice:
@@ -43,21 +49,15 @@ class PostureLattice:
         """Build the lattice.
 
         Raises:
-            InvalidInput: more steps than memory allows.
+            InvalidInput: it would take too much memory or computing time.
         """
         self.problem = problem
+        _check_size(problem)
         self.base = LayeredLattice(problem)
         axes = problem.lattice.postures
         grids = np.meshgrid(*(np.array(a.indices) for a in axes), indexing="ij")
         self.indices: IntArray = frozen(np.stack([g.ravel() for g in grids], axis=1))
         self.origin = int(np.flatnonzero(~self.indices.any(axis=1))[0])
-        count = problem.lattice.divisions * len(self.indices) * 3 ** len(axes)
-        if count > MOST_STEPS:
-            raise InvalidInput(
-                "lattice postures",
-                f"{len(self.indices)} postures a layer, {count} joint steps",
-                f"at most {MOST_STEPS:.0e} of divisions x postures x 3^axes",
-            )
         nominal = self.base.nominal.joint_values
         values = np.repeat(nominal[:, None], len(self.indices), axis=1)
         directions = displacements(problem, nominal)
@@ -152,6 +152,40 @@ class PostureLattice:
             ],
             dtype=np.int64,
         )
+
+
+def _check_size(problem: Problem) -> None:
+    """Raise `InvalidInput` if the arrays of the search, or their making, would take too much."""
+    robot, settings = problem.robot, problem.lattice
+    layers, shapes = settings.divisions + 1, int(robot.collision_model.ngeoms)
+    postures = math.prod(len(axis.indices) for axis in settings.postures)
+    offsets = math.prod(2 * getattr(settings, name).half_count + 1 for name in settings.axes)
+    around = 3 ** len(settings.postures)
+    reacts = problem.mode.attitude_reacts and robot.nd > 0
+    points = 8 * math.ceil(_largest_step(problem) / _JOINT_STEP) if reacts else 0
+    moves = bool(np.any(problem.joint_displacement))  # otherwise one layer speaks for all
+    advice = "fewer divisions, fewer posture axes, or a smaller half_count or number of levels"
+    counts = {"layers": layers, "postures": postures, "steps from a posture": around}
+    node = 24 * robot.nd + _BYTES_PER_SHAPE * shapes + 8 * offsets
+    step = _BYTES_PER_STEP + 24 * robot.nd + 32 * (3 + robot.nd) * points / (1 if moves else layers)
+    of_offsets = _BYTES_PER_OFFSET_EDGE * layers * offsets**2
+    check_memory("lattice postures", counts, step + node / around, advice, of_offsets)
+    counts = counts | {"points": points} if moves else {**counts, "layers": 1, "points": points}
+    check_work("lattice postures", counts, _SECONDS_PER_POINT * max(robot.nd, 1), advice)
+    counts = {"layers": layers if moves else 1, "postures": postures}
+    counts["pairs of links"] = len(robot.collision_model.collisionPairs)
+    check_work("lattice postures", counts, _SECONDS_PER_PAIR, advice)
+
+
+def _largest_step(problem: Problem) -> float:
+    """Largest change of a joint from one layer to the next [rad or m], as a bound."""
+    robot, settings = problem.robot, problem.lattice
+    begin = robot.joint_values(problem.start)
+    most = float(np.max(np.abs(problem.joint_displacement), initial=0.0)) / settings.divisions
+    for axis in settings.postures:
+        factor = float(np.max(np.abs(axis.factors(np.array([1])))))
+        most += factor * float(np.max(np.abs(axis.displacement(robot, begin)), initial=0.0))
+    return most
 
 
 def displacements(problem: Problem, nominal: Array) -> Array:

@@ -6,7 +6,12 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.rotations import rotate
-from ffsr_plan.search.postures.cost_kernels import ClearanceCost, Obstacles, PostureGrid
+from ffsr_plan.search.postures.cost_kernels import (
+    FREE_ATTITUDE_ERROR,
+    ClearanceCost,
+    Obstacles,
+    PostureGrid,
+)
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 
 
@@ -46,6 +51,7 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
         ),
         delta_d=problem.delta_d,
         reach_attitude=problem.reach_attitude,
+        free_error=FREE_ATTITUDE_ERROR,
         radii=_radii(lattice),
         queries=np.zeros(1, dtype=np.int64),
     )

@@ -1,0 +1,98 @@
+"""All that touches at a configuration, and the errors that report it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.errors import GoalInCollision, StartInCollision
+from ffsr_plan.core.formatting import Contact
+from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.scene.scene import Scene
+
+
+def contacts(robot: SpaceRobot, scene: Scene, q: Array) -> tuple[Contact, ...]:
+    """Links that touch spheres or one another.
+
+    Args:
+        robot: the robot.
+        scene: the obstacles.
+        q: (nq,) configuration.
+
+    Returns:
+        One contact for each pair of a link and a sphere, or of two links, the deepest first.
+    """
+    deepest: dict[tuple[str, int | str | None], float] = {}
+    for near in [*ObstacleQuery(robot, scene).touching(q), *SelfQuery(robot).touching(q)]:
+        pair = near.link, near.obstacle
+        deepest[pair] = max(deepest.get(pair, 0.0), -near.distance)
+    found = [named(scene, Nearest(-depth, *pair)) for pair, depth in deepest.items()]
+    return tuple(sorted(found, key=lambda contact: -contact.depth))
+
+
+def named(scene: Scene, near: Nearest) -> Contact:
+    """A nearest pair with the source of its sphere.
+
+    Args:
+        scene: the obstacles.
+        near: the pair.
+    """
+    sphere = near.obstacle
+    source = scene.source_of(sphere) if isinstance(sphere, int) else ""
+    return Contact(near.link, sphere, -near.distance, source)
+
+
+def start_in_collision(
+    robot: SpaceRobot, scene: Scene, start: Array, goal: Array | None = None
+) -> StartInCollision:
+    """The error that reports all contacts of the start, and of the goal where it is known.
+
+    Args:
+        robot: the robot.
+        scene: the obstacles.
+        start: (nq,) start, in collision.
+        goal: (nq,) end of the motion, or None.
+    """
+    found = contacts(robot, scene, start)
+    at_goal = () if goal is None else contacts(robot, scene, goal)
+    advice = _advice(robot, scene, (*found, *at_goal))
+    return StartInCollision(*found[0][:3], found, at_goal, advice)
+
+
+def goal_in_collision(robot: SpaceRobot, scene: Scene, goal: Array) -> GoalInCollision:
+    """The error that reports all contacts of the goal.
+
+    Args:
+        robot: the robot.
+        scene: the obstacles.
+        goal: (nq,) end of the motion, in collision.
+    """
+    found = contacts(robot, scene, goal)
+    return GoalInCollision(*found[0][:3], found, (), _advice(robot, scene, found))
+
+
+def _advice(robot: SpaceRobot, scene: Scene, found: tuple[Contact, ...]) -> tuple[str, ...]:
+    """What may help against contacts."""
+    advice = []
+    spheres = [contact.depth for contact in found if isinstance(contact.obstacle, int)]
+    links = {contact.link for contact in found}
+    links |= {contact.obstacle for contact in found if isinstance(contact.obstacle, str)}
+    if spheres:
+        way = "the base or the joints" if robot.nd else "the base"
+        advice.append(f"move {way} out by more than {max(spheres):.3g} m")
+    if spheres and scene.excess and max(spheres) <= scene.excess:
+        advice.append(f"a smaller excess of the cover, which is now up to {scene.excess:g} m")
+    if len(spheres) < len(found):
+        advice.append(
+            "exempt links that are designed to touch in an SRDF, which "
+            "`fp.self_collisions(robot, q)` lists and writes; or change the joint values"
+        )
+    larger = {r.link: r for r in robot.replacements if r.link in links and np.isfinite(r.excess)}
+    for link, replaced in larger.items():
+        if replaced.excess >= max(c.depth for c in found if link in (c.link, c.obstacle)):
+            advice.append(
+                f"a closer shape for link '{link}', whose {replaced.shape} is replaced by a "
+                f"{replaced.by} up to {replaced.excess:.3g} m larger"
+            )
+    return tuple(advice)

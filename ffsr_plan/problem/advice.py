@@ -1,0 +1,75 @@
+"""What may help where a lattice holds no path, or none could be proven: advice for errors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
+from ffsr_plan.problem.problem import Problem
+
+
+def against_obstacles(problem: Problem) -> tuple[str, ...]:
+    """What may help where obstacles close a lattice without posture axes.
+
+    Args:
+        problem: gives the lattice and the mode.
+    """
+    advice = [*_offsets(problem)]
+    if problem.lattice.axes:
+        advice.append(f"more than {problem.lattice.divisions} divisions")
+    if problem.robot.nd:
+        only = "" if advice else ": this lattice holds one path, and divisions do not change it"
+        advice.append(f"posture axes (lattice.postures), by which the joints give way{only}")
+    advice.append("another start or goal")
+    return tuple(advice)
+
+
+def against_self_collision() -> tuple[str, ...]:
+    """What may help where links meet each other on the straight way of the joints."""
+    return (
+        "other joint values at start or goal, or posture axes (lattice.postures): no offset of the "
+        "base changes the way of the joints",
+        "an SRDF that exempts the links if they are designed to touch",
+    )
+
+
+def for_proof(problem: Problem, cut_short: bool, links: bool) -> tuple[str, ...]:
+    """What may help where the path of a random search with posture axes was not proven.
+
+    Args:
+        problem: gives the lattice and the mode.
+        cut_short: whether a time limit ended the search.
+        links: whether two links come too close, rather than a link and an obstacle.
+    """
+    advice = ["a longer time_limit, which ended the search"] if cut_short else []
+    advice += ["another seed", "more annealing_shifts"]
+    advice += [] if links else _offsets(problem)
+    for k, axis in enumerate(problem.lattice.postures):
+        advice.append(f"lattice.postures.{k}, {_of_posture_axis(axis)}")
+    return (*advice, f"more than {problem.lattice.divisions} divisions")
+
+
+def _offsets(problem: Problem) -> Iterator[str]:
+    """The axes across the way of the base: those that exist, and those that could."""
+    travels = bool(np.any(problem.base_displacement != 0.0))
+    for name in ("lateral", "normal"):
+        axis = getattr(problem.lattice, name)
+        if axis is not None:
+            yield (
+                f"lattice.{name}, which has half_count {axis.half_count} and spacing "
+                f"{axis.spacing:g} m: wider, or finer"
+            )
+        elif travels:
+            yield f"a {name} axis (lattice.{name}), which this lattice does not have"
+
+
+def _of_posture_axis(axis: PostureAxis | PostureTarget) -> str:
+    if isinstance(axis, PostureTarget):
+        return f"which has {axis.levels} levels towards '{axis.towards}': more, or another posture"
+    names = ", ".join(name for name, _ in axis.joints)
+    return (
+        f"which moves {names} with half_count {axis.half_count} and spacing {axis.spacing:g}: "
+        "wider, finer, or other joints"
+    )

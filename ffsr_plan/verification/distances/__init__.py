@@ -1,0 +1,1 @@
+"""Distances of convex solids for verification: compiled, by hand, without Coal."""

@@ -1,0 +1,207 @@
+"""Distances of many placed solids: to spheres, and to one another."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.compilation import kernel
+from ffsr_plan.verification.distances.hull_gap_kernel import hull_gap
+from ffsr_plan.verification.distances.solid_arrays import SolidArrays
+
+
+@kernel
+def sphere_distances(
+    solids: SolidArrays,
+    asked: IntArray,
+    turns: Array,
+    places: Array,
+    base_turns: Array,
+    base_places: Array,
+    centers: Array,
+    radii: Array,
+    near: IntArray,
+    ranges: IntArray,
+) -> Array:
+    """Least distance of a solid to some spheres, for each question.
+
+    Args:
+        solids: the solids.
+        asked: (q, 2) configuration and solid of each question.
+        turns: (n, s, 3, 3) rotations of the solids, base axes.
+        places: (n, s, 3) their origins from the base origin, base axes [m].
+        base_turns: (n, 3, 3) rotations of the base, world axes.
+        base_places: (n, 3) base origins [m].
+        centers: (k, 3) centres of the spheres, from the same point as `base_places` [m].
+        radii: (k,) [m].
+        near: numbers of spheres, lists one after another.
+        ranges: (q, 2) begin and end of each question's list.
+
+    Returns:
+        (q,) signed distances [m]; infinite for an empty list.
+    """
+    result = np.full(len(asked), np.inf)
+    local, eye = np.empty((1, 3)), np.eye(3)
+    still, between = np.zeros(3), np.empty(3)
+    for q in range(len(asked)):
+        n, s = asked[q]
+        begin, end = ranges[q]
+        corners = solids.corners[solids.starts[s] : solids.starts[s + 1]]
+        nearest, least = -1, np.inf
+        for first in range(2):  # the sphere that seems nearest first, then all that may be nearer
+            for k in range(begin, end):
+                sphere = near[k]
+                for i in range(3):
+                    between[i] = centers[sphere, i] - base_places[n, i]
+                _into_solid(between, base_turns[n], turns[n, s], places[n, s], local[0])
+                bound = -solids.radii[s] - radii[sphere]
+                bound += _apart(local[0], solids.middles[s])
+                if first == 0:
+                    if bound < least:
+                        nearest, least = k, bound
+                    continue
+                if bound >= result[q] and k != nearest:
+                    continue
+                taken = solids.swells[s] + radii[sphere]
+                if solids.halves[s, 0] >= 0.0:
+                    distance = _from_box(local[0], solids.halves[s])
+                elif len(corners) <= 2:
+                    distance = _from_segment(local[0], corners[0], corners[-1])
+                else:
+                    distance = hull_gap(corners, local, eye, still, result[q] + taken)
+                result[q] = min(result[q], distance - taken)
+            if first == 0 and nearest >= 0:  # bring it to the front
+                near[begin], near[nearest] = near[nearest], near[begin]
+                nearest = begin
+    return result
+
+
+@kernel
+def pair_distances(
+    solids: SolidArrays,
+    asked: IntArray,
+    pairs: IntArray,
+    turns: Array,
+    places: Array,
+    enough: Array,
+) -> Array:
+    """Lower bounds on the distances of pairs of solids.
+
+    Args:
+        solids: the solids.
+        asked: (q, 2) configuration and pair of each question.
+        pairs: (p, 2) the solids of each pair.
+        turns: (n, s, 3, 3) rotations of the solids, axes of any common frame.
+        places: (n, s, 3) their origins [m].
+        enough: (q,) bound that will do [m].
+
+    Returns:
+        (q,) bounds on the signed distances [m]; exact to rounding where they are below `enough`.
+    """
+    result = np.empty(len(asked))
+    rotation, shift, between = np.empty((3, 3)), np.empty(3), np.empty(3)
+    for q in range(len(asked)):
+        n, pair = asked[q]
+        a, b = pairs[pair]
+        for i in range(3):
+            between[i] = places[n, b, i] - places[n, a, i]
+        for i in range(3):
+            shift[i] = 0.0
+            for j in range(3):
+                shift[i] += turns[n, a, j, i] * between[j]
+                rotation[i, j] = 0.0
+                for k in range(3):
+                    rotation[i, j] += turns[n, a, k, i] * turns[n, b, k, j]
+        for i in range(3):
+            between[i] = shift[i]
+            for j in range(3):
+                between[i] += rotation[i, j] * solids.middles[b, j]
+        gap = _apart(between, solids.middles[a]) - solids.radii[a] - solids.radii[b]
+        if gap < enough[q]:
+            swell = solids.swells[a] + solids.swells[b]
+            gap = -swell + hull_gap(
+                solids.corners[solids.starts[a] : solids.starts[a + 1]],
+                solids.corners[solids.starts[b] : solids.starts[b + 1]],
+                rotation,
+                shift,
+                enough[q] + swell,
+            )
+        result[q] = gap
+    return result
+
+
+@kernel
+def near_spheres(middles: Array, reaches: Array, sizes: Array, centers: Array, radii: Array):  # type: ignore[no-untyped-def]  # noqa: ANN201
+    """Spheres that can be the nearest one to a solid on some stretch of its way.
+
+    Args:
+        middles: (t, 3) a point close to the solid's middle all along each stretch [m].
+        reaches: (t,) largest distance of the solid's middle from it on the stretch [m].
+        sizes: (t,) radius of the sphere about the middle that contains the solid [m].
+        centers: (k, 3) centres of the spheres [m].
+        radii: (k,) [m].
+
+    Returns:
+        Numbers of spheres, lists one after another, and (t + 1,) where each list begins.
+    """
+    starts = np.zeros(len(middles) + 1, dtype=np.int64)
+    numbers = np.empty(len(middles), dtype=np.int64)
+    for fill in range(2):
+        for t in range(len(middles)):
+            most = np.inf  # the distance of the nearest sphere is at most this
+            for k in range(len(radii)):
+                most = min(most, _apart(centers[k], middles[t]) - radii[k] + reaches[t])
+            found = starts[t]
+            for k in range(len(radii)):
+                distance = _apart(centers[k], middles[t]) - radii[k]
+                if distance - reaches[t] - sizes[t] <= most:
+                    if fill == 1:
+                        numbers[found] = k
+                    found += 1
+            if fill == 0:
+                starts[t + 1] = found
+        if fill == 0:
+            numbers = np.empty(starts[-1], dtype=np.int64)
+    return numbers, starts
+
+
+@kernel
+def _into_solid(point: Array, base: Array, turn: Array, place: Array, local: Array) -> None:
+    """Put a point, from the base origin and in world axes, into the frame of a solid."""
+    x = base[0, 0] * point[0] + base[1, 0] * point[1] + base[2, 0] * point[2] - place[0]
+    y = base[0, 1] * point[0] + base[1, 1] * point[1] + base[2, 1] * point[2] - place[1]
+    z = base[0, 2] * point[0] + base[1, 2] * point[1] + base[2, 2] * point[2] - place[2]
+    for i in range(3):
+        local[i] = turn[0, i] * x + turn[1, i] * y + turn[2, i] * z
+
+
+@kernel
+def _apart(a: Array, b: Array) -> float:
+    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
+
+
+@kernel
+def _from_box(point: Array, half: Array) -> float:
+    """Signed distance of a point from a box about the origin."""
+    outside, inside = 0.0, -np.inf
+    for i in range(3):
+        beyond = abs(point[i]) - half[i]
+        outside += max(beyond, 0.0) ** 2
+        inside = max(inside, beyond)
+    return math.sqrt(outside) + min(inside, 0.0)
+
+
+@kernel
+def _from_segment(point: Array, a: Array, b: Array) -> float:
+    """Distance of a point from a segment."""
+    square, along = 0.0, 0.0
+    for i in range(3):
+        square += (b[i] - a[i]) ** 2
+        along += (b[i] - a[i]) * (point[i] - a[i])
+    share = min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
+    total = 0.0
+    for i in range(3):
+        total += (point[i] - a[i] - share * (b[i] - a[i])) ** 2
+    return math.sqrt(total)

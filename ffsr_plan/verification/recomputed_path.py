@@ -1,0 +1,163 @@
+"""The path on the lattice that a plan names by its nodes: its place, and its F before refinement.
+
+A refined plan lies beside the nodes that it names, within the lattice's window. Its path on the
+lattice has the same attitudes and joint values, so that F of that path can be computed too.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.verification.motion_samples import Sampler
+from ffsr_plan.verification.recomputed_objective import (
+    AGREEMENT,
+    length_of,
+    objective_of,
+    tolerances,
+)
+from ffsr_plan.verification.separation import SampledDistances
+from ffsr_plan.verification.urdf_reading import Bodies
+
+if TYPE_CHECKING:
+    from ffsr_plan.plans.plan_data import PlanData
+
+_OFF_THE_AXES = 1e-9  # [m], and relative to the distance travelled
+
+
+class LatticePath:
+    """The nodes of a plan, placed by the settings of its lattice alone.
+
+    Attributes:
+        positions: (m + 1, 3) base origins of the nodes; empty where the robot floats [m].
+        joint_values: (m + 1, nd) of the nodes [rad or m].
+        moved: whether the plan's base leaves its nodes.
+        bent: whether the plan's joints leave its nodes.
+    """
+
+    def __init__(self, plan: PlanData) -> None:
+        """Place the nodes of a plan."""
+        problem, lattice = plan.problem, plan.problem.lattice
+        m = lattice.divisions
+        progress = np.arange(m + 1)[:, None] / m
+        nodes = plan.nodes.reshape(m + 1, -1)
+        self._axes = _directions(plan)
+        spacing = np.array([getattr(lattice, name).spacing for name in lattice.axes])
+        self._window = spacing * [getattr(lattice, name).half_count for name in lattice.axes]
+        travel = problem.goal[:3] - problem.start[:3]
+        self._straight = problem.start[:3] + progress * travel
+        offsets = nodes[:, : len(spacing)] * spacing
+        self.positions: Array = self._straight + offsets @ self._axes
+        first, last = plan.motion.joint_values[[0, -1]]
+        self.joint_values: Array = first + progress * (last - first)
+        self.joint_values += _displacements(plan, nodes[:, len(spacing) :], self.joint_values)
+        self._plan, self._allowed = plan, _OFF_THE_AXES * max(1.0, float(np.linalg.norm(travel)))
+        apart = 0.0 if problem.mode.floats else np.abs(plan.motion.positions - self.positions).max()
+        self.moved = bool(apart > self._allowed)
+        bend = np.max(np.abs(plan.motion.joint_values - self.joint_values), initial=0.0)
+        self.bent = bool(bend > AGREEMENT)
+
+    def problems(self, bodies: Bodies, nodes: Array) -> list[str]:
+        """What contradicts the nodes, the objective on the lattice, or the optimum.
+
+        Args:
+            bodies: the robot, from its URDF.
+            nodes: (m + 1,) clearances measured at the plan's own nodes [m].
+        """
+        plan, problem = self._plan, self._plan.problem
+        found = []
+        if np.any(plan.nodes.reshape(len(nodes), -1)[[0, -1]]):
+            found.append("the nodes do not begin and end without an offset")
+        if self.moved and problem.lattice.postures:
+            found.append("the base positions are not those of the nodes")
+        if self.moved and not self._in_window():
+            found.append("the base leaves the window of the lattice")
+        if self.bent and not (problem.lattice.postures and problem.reach_attitude):
+            found.append("the joint values are not those of the nodes")
+        if plan.objective > plan.lattice_objective * (1.0 + AGREEMENT) and not self.bent:
+            found.append(
+                f"F is {plan.objective:.12g}, above F on the lattice, {plan.lattice_objective:.12g}"
+            )
+        on_lattice = self._lattice_objective(bodies, nodes)
+        if on_lattice is not None:
+            least, value, share = on_lattice
+            if least <= 0.0:
+                found.append("a node of the lattice path is in collision")
+            elif abs(value - plan.lattice_objective) > share * max(value, 1e-12):
+                stated = plan.lattice_objective
+                found.append(f"F on the lattice is {value:.12g}, not {stated:.12g}")
+        exact = plan.planner.exact and not problem.lattice.postures
+        if exact and abs(plan.optimum - plan.lattice_objective) > AGREEMENT * plan.optimum:
+            found.append("the optimum is not F of the exact planner's own path")
+        if plan.optimum < self._least() * (1.0 - AGREEMENT):
+            found.append(f"the optimum is below F of any path, {self._least():.12g}")
+        return found
+
+    def _in_window(self) -> bool:
+        """Whether the base stays in the lattice's layers and within its window."""
+        offsets = self._plan.motion.positions - self._straight
+        along = offsets @ self._axes.T
+        off = np.abs(offsets - along @ self._axes).max()
+        beyond = np.max(np.abs(along) - self._window, initial=0.0)
+        return bool(max(off, beyond) <= self._allowed)
+
+    def _lattice_objective(self, bodies: Bodies, nodes: Array) -> tuple[float, float, float] | None:
+        """Least clearance, F and its relative tolerance on the lattice; None if bent off it."""
+        problem = self._plan.problem
+        if self.bent:
+            return None
+        if self.moved:
+            sampler = Sampler(self._plan, bodies)
+            order = np.arange(sampler.edges + 1)
+            edge = np.minimum(order, sampler.edges - 1)
+            samples = sampler.at(edge, (order - edge).astype(np.float64))
+            samples = samples._replace(base_places=self.positions - problem.start[:3])
+            distances = SampledDistances(bodies, problem.scene, problem.start[:3])
+            nodes = distances.clearances(samples)
+        value = objective_of(problem, length_of(problem, self.positions, self.joint_values), nodes)
+        return float(nodes.min()), value, tolerances(problem, bodies, nodes, value)[1]
+
+    def _least(self) -> float:
+        """F of the straight path past obstacles that are far away, below which no path falls."""
+        problem = self._plan.problem
+        m, cap = problem.lattice.divisions, problem.clearance_cap
+        progress = np.arange(m + 1)[:, None] / m
+        first, last = self._plan.motion.joint_values[[0, -1]]
+        straight = length_of(problem, self._straight, first + progress * (last - first))
+        far = np.full(m + 1, np.inf if cap is None else cap)
+        return objective_of(problem, straight, far)
+
+
+def _directions(plan: PlanData) -> Array:
+    """(axes, 3) unit vectors of the base axes: lateral, then normal; world axes."""
+    problem, names = plan.problem, plan.problem.lattice.axes
+    if not names:
+        return np.zeros((0, 3))
+    x, y, z = problem.goal[:3] - problem.start[:3]
+    flat = float(np.hypot(x, y))
+    far = float(np.hypot(flat, z))
+    # the lateral axis is horizontal, to the right of the way; the normal one perpendicular to both
+    level = np.array([-y / flat, x / flat, 0.0]) if flat > 1e-9 * far else np.array([1.0, 0.0, 0.0])
+    way = np.array([x, y, z]) / far
+    normal = np.cross(way, level)
+    normal /= np.linalg.norm(normal)
+    axes = {"lateral": np.cross(normal, way), "normal": normal}
+    return np.array([axes[name] for name in names])
+
+
+def _displacements(plan: PlanData, indices: IntArray, nominal: Array) -> Array:
+    """(m + 1, nd) displacement of the joints by posture axes at indices (m + 1, axes)."""
+    robot = plan.problem.robot
+    total = np.zeros_like(nominal)
+    for axis, index in zip(plan.problem.lattice.postures, indices.T, strict=False):
+        target = getattr(axis, "towards", None)
+        if isinstance(target, str):
+            for name, value in robot.postures[target].items():
+                k = robot.joint_names.index(name)
+                total[:, k] += index / axis.levels * (value - nominal[:, k])  # type: ignore[union-attr]
+        else:
+            for name, value in axis.joints:  # type: ignore[union-attr]
+                total[:, robot.joint_names.index(name)] += index * axis.spacing * value  # type: ignore[union-attr]
+    return total

@@ -1,0 +1,292 @@
+"""Distances all along a motion: samples, halved until nothing can be hidden between them.
+
+Between two samples no point of a shape travels farther than its speed bound times the time between
+them. To touch anything, it would have to cover the distance at one sample to get there, and that at
+the other to get back. So nothing is hidden where the sum of both distances exceeds that travel.
+Where it does not, a sample is taken in the middle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.verification.motion_samples import Sampler, Samples
+from ffsr_plan.verification.rate_bounds import RateBounds
+from ffsr_plan.verification.separation import SampledDistances
+from ffsr_plan.verification.urdf_reading import Bodies
+
+if TYPE_CHECKING:
+    from ffsr_plan.plans.plan_data import PlanData
+
+ROUNDING = 1e-9
+"""Length [m] added to every travel, for rounding errors of distances."""
+FINEST = 1e-8
+"""Travel [m] between two samples below which an interval is not halved any more."""
+MOST_SAMPLES = 2_000_000
+"""Samples between the even ones after which intervals are not halved any more."""
+CONFIRMED = 1e-6
+"""The plan's proven clearance is confirmed up to this much [m]."""
+_VALUES_AT_ONCE = 1_000_000  # distances in one block of samples
+_SAMPLES_AT_ONCE = 2048
+_TURN_ROUNDING = 1e-9  # [rad]
+
+OnProgress = Callable[[float], object]
+
+
+class Place(NamedTuple):
+    """Something found on a motion.
+
+    Attributes:
+        value: a distance or a travel [m].
+        edge: the edge.
+        names: of the link, or the two links, concerned.
+    """
+
+    value: float
+    edge: int
+    names: tuple[str, ...]
+
+
+class Swept:
+    """What was found all along a motion.
+
+    Attributes:
+        clearance: least measured distance of a link to an obstacle; None without any.
+        separation: least lower bound on the distance of two links that must not touch; None without
+            any.
+        clearance_bound: lower bound on the clearance at and between all samples [m].
+        hidden: where two samples may hide a contact, and the travel between them: with an obstacle
+            first, of two links second; None where nothing can be hidden.
+        nodes: (m + 1,) clearances at the nodes [m].
+        drift: largest distance of the centre of mass from where it was at the start [m].
+        deviation: largest distance of joints and base from straight lines between nodes [m, rad].
+        excess_turn: largest rotation of the base between two samples beyond its bound [rad].
+        samples: number of configurations.
+        largest_step: longest way of any point of a shape between two samples [m].
+        finite: whether all configurations are numbers.
+    """
+
+    def __init__(self, edges: int) -> None:
+        self.clearance: Place | None = None
+        self.separation: Place | None = None
+        self.clearance_bound = np.inf
+        self.hidden: list[Place | None] = [None, None]
+        self.nodes = np.full(edges + 1, np.inf)
+        self.drift = self.deviation = self.largest_step = self.excess_turn = 0.0
+        self.samples = 0
+        self.finite = True
+
+
+class _Intervals(NamedTuple):
+    """Intervals: edge, times, numbers of the samples at both ends, bound on the base's rotation."""
+
+    edge: IntArray
+    begin: Array
+    end: Array
+    first: IntArray
+    last: IntArray
+    turn: Array
+
+    def travel(self, interval: IntArray, speeds: Array, reach: Array) -> Array:
+        """Travel of parts in intervals, by speeds and reaches of each [m]."""
+        time = (self.end - self.begin)[interval]
+        return np.asarray(time * (speeds + self.turn[interval] * reach) + ROUNDING)
+
+
+class _Items(NamedTuple):
+    """What is open: interval, part (shapes, then pairs), and its distances at both ends."""
+
+    interval: IntArray
+    part: IntArray
+    at_first: Array
+    at_last: Array
+
+    def chosen(self, flags: Flags) -> _Items:
+        return _Items(
+            self.interval[flags], self.part[flags], self.at_first[flags], self.at_last[flags]
+        )
+
+
+def sweep(
+    plan: PlanData, bodies: Bodies, samples: int, on_progress: OnProgress | None = None
+) -> Swept:
+    """Measure distances all along a plan's motion.
+
+    Args:
+        plan: the plan.
+        bodies: the robot, from its URDF.
+        samples: least number of equal time steps on each edge.
+        on_progress: called with the share that is done, from 0 to 1.
+    """
+    run = _Sweep(plan, bodies, samples)
+    total = run.sampler.edges * samples
+    size = max(1, min(_SAMPLES_AT_ONCE, _VALUES_AT_ONCE // max(1, run.distances.parts)))
+    for begin in range(0, total, size):
+        run.block(begin, min(begin + size, total))
+        if not run.found.finite:
+            break
+        if on_progress is not None:
+            on_progress(min(begin + size, total) / total)
+    return run.found
+
+
+class _Sweep:
+    """A sweep under way."""
+
+    def __init__(self, plan: PlanData, bodies: Bodies, samples: int) -> None:
+        self._per_edge = samples
+        self.sampler = Sampler(plan, bodies)
+        self.distances = SampledDistances(bodies, plan.problem.scene, plan.problem.start[:3])
+        self.found = Swept(self.sampler.edges)
+        mode, edges = plan.problem.mode, self.sampler.edges
+        moved = np.linalg.norm(np.diff(self.sampler.positions, axis=0), axis=1)
+        base = np.zeros(edges) if mode.floats else moved
+        names = plan.problem.robot.joint_names
+        self._rates = rates = RateBounds(bodies, names, self.sampler.joint_values)
+        speeds, reach = rates.afloat() if mode.floats else (rates.shapes, rates.reach)
+        shapes, pairs = self.distances.shapes, self.distances.pairs
+        self._speeds = np.hstack([speeds[:, :shapes] + base[:, None], rates.of_pairs(pairs)])
+        self._reach = np.append(reach[:shapes], np.zeros(len(pairs)))
+        ends = (plan.problem.start[3:7], plan.problem.goal[3:7])
+        self._held_turn = None if mode.attitude_reacts else _angle(*ends) / edges
+        self._claim = plan.certificate.least_clearance
+        self._start = self.sampler.at(np.zeros(1, dtype=np.int64), np.zeros(1)).centers_of_mass[0]
+        self._halvings = 0
+
+    def block(self, begin: int, end: int) -> None:
+        """The even intervals from `begin` to `end`, and what they are halved into."""
+        points, parts = np.arange(begin, end + 1), np.arange(self.distances.parts)
+        edge = np.minimum(points // self._per_edge, self.sampler.edges - 1)
+        time = (points - edge * self._per_edge) / self._per_edge
+        samples = self._sampled(edge, time)
+        self.found.samples -= int(begin > 0)  # the first is the last of the block before
+        if not self.found.finite:
+            return
+        self._samples, self._first_edge = samples, int(edge[0])
+        order = np.arange(end - begin)
+        last = np.where(edge[1:] > edge[:-1], 1.0, time[1:])
+        intervals = self._intervals(edge[:-1], time[:-1], last, order, order + 1)
+        which, part = np.repeat(order, len(parts)), np.tile(parts, len(order))
+        travel = self._travel(intervals, which, part).reshape(len(order), len(parts))
+        beside = np.maximum(np.vstack([travel[:1], travel]), np.vstack([travel, travel[-1:]]))
+        self.distances.stretches(edge - edge[0], self.distances.middles(samples), beside)
+        asked = np.repeat(points - begin, len(parts)), np.tile(parts, len(points))
+        values = self._measured(samples, edge, *asked, beside.ravel())
+        table = values.reshape(len(points), len(parts))
+        nodes = points % self._per_edge == 0
+        outer = table[nodes][:, : self.distances.shapes]
+        self.found.nodes[points[nodes] // self._per_edge] = outer.min(axis=1, initial=np.inf)
+        items = _Items(which, part, table[:-1].ravel(), table[1:].ravel())
+        while self.found.finite and len(items.interval):
+            travel = self._travel(intervals, items.interval, items.part)
+            is_open = self._judge(intervals, items, travel)
+            intervals, items = self._halved(intervals, items.chosen(is_open), travel[is_open])
+
+    def _sampled(self, edge: IntArray, time: Array) -> Samples:
+        """Samples, and what they say of the motion itself."""
+        samples, found = self.sampler.at(edge, time), self.found
+        found.samples += len(edge)
+        drift = float(np.linalg.norm(samples.centers_of_mass - self._start, axis=1).max())
+        deviation = float(samples.deviation.max())
+        found.drift, found.deviation = max(found.drift, drift), max(found.deviation, deviation)
+        found.finite &= bool(np.isfinite(drift) and np.isfinite(deviation))
+        return samples
+
+    def _intervals(
+        self, edge: IntArray, begin: Array, end: Array, first: IntArray, last: IntArray
+    ) -> _Intervals:
+        """Intervals, with a bound on the angular velocity of the base that both ends allow."""
+        apart = end - begin
+        if self._held_turn is not None:
+            turn = np.full(len(edge), self._held_turn)
+        else:
+            ends = [self._samples.momentum.at(sample) for sample in (first, last)]
+            turn = np.maximum(*(self._rates.turn(each, edge, 0.5 * apart) for each in ends))
+        turns = self._samples.base_turns
+        sine = np.linalg.norm(turns[first] - turns[last], axis=(1, 2)) / np.sqrt(8.0)
+        turned = 2.0 * np.arcsin(np.minimum(sine, 1.0))
+        excess = float(np.max(turned - np.minimum(turn * apart, np.pi), initial=0.0))
+        self.found.excess_turn = max(self.found.excess_turn, excess)
+        return _Intervals(edge, begin, end, first, last, turn)
+
+    def _travel(self, intervals: _Intervals, interval: IntArray, part: IntArray) -> Array:
+        speeds = self._speeds[intervals.edge[interval], part]
+        return intervals.travel(interval, speeds, self._reach[part])
+
+    def _measured(
+        self, samples: Samples, edge: IntArray, which: IntArray, part: IntArray, enough: Array
+    ) -> Array:
+        """Distances; the least ones are noted."""
+        stretch = edge[which] - self._first_edge
+        values = self.distances.at(samples, which, part, stretch, enough)
+        outer = part < self.distances.shapes
+        for flags, name in ((outer, "clearance"), (~outer, "separation")):
+            before: Place | None = getattr(self.found, name)
+            if flags.any():
+                k = int(np.flatnonzero(flags)[np.argmin(values[flags])])
+                if before is None or values[k] < before.value:
+                    setattr(self.found, name, self._place(values[k], edge[which[k]], part[k]))
+        return values
+
+    def _place(self, value: float, edge: int, part: int) -> Place:
+        return Place(float(value), int(edge), self.distances.names[part])
+
+    def _judge(self, intervals: _Intervals, items: _Items, travel: Array) -> Flags:
+        """Which items have to be halved; the others are noted."""
+        found, outer = self.found, items.part < self.distances.shapes
+        bound = 0.5 * (items.at_first + items.at_last - travel)
+        nearest = found.clearance.value if found.clearance is not None else np.inf
+        held = nearest >= self._claim - ROUNDING  # otherwise there is nothing to confirm
+        enough = np.where(outer, max(self._claim - CONFIRMED, 0.0) if held else 0.0, 0.0)
+        touching = np.minimum(items.at_first, items.at_last) <= 0.0
+        is_open = ~((bound > 0.0) & (bound >= enough)) & ~touching
+        ends_here = is_open & (travel - ROUNDING <= FINEST)
+        if self._halvings > MOST_SAMPLES:
+            ends_here = is_open
+        for k, flags in enumerate((outer, ~outer)):
+            rest = np.flatnonzero(ends_here & flags & (bound <= 0.0))
+            if len(rest):
+                worst = rest[np.argmax(travel[rest])]
+                edge = intervals.edge[items.interval[worst]]
+                place = self._place(travel[worst] - ROUNDING, edge, items.part[worst])
+                found.hidden[k] = max(filter(None, (found.hidden[k], place)))
+        is_open &= ~ends_here
+        done = ~is_open
+        found.clearance_bound = min(found.clearance_bound, bound[done & outer].min(initial=np.inf))
+        found.largest_step = max(found.largest_step, travel[done].max(initial=0.0))
+        return is_open
+
+    def _halved(
+        self, intervals: _Intervals, items: _Items, travel: Array
+    ) -> tuple[_Intervals, _Items]:
+        """Both halves of the intervals of open items, with the distances at their middles."""
+        chosen, inverse = np.unique(items.interval, return_inverse=True)
+        of_item: IntArray = inverse.ravel()
+        edge, begin, end = intervals.edge[chosen], intervals.begin[chosen], intervals.end[chosen]
+        first, last = intervals.first[chosen], intervals.last[chosen]
+        middle = 0.5 * (begin + end)
+        if not len(chosen):
+            return intervals, items
+        samples = self._sampled(edge, middle)
+        values = self._measured(samples, edge, of_item, items.part, travel)
+        number = len(self._samples.base_turns) + np.arange(len(chosen))
+        self._halvings += len(chosen)
+        self._samples = self._samples.with_turns_of(samples)
+        halves = self._intervals(
+            np.tile(edge, 2), np.append(begin, middle), np.append(middle, end),
+            np.append(first, number), np.append(number, last),
+        )  # fmt: skip
+        return halves, _Items(
+            np.append(of_item, of_item + len(chosen)), np.tile(items.part, 2),
+            np.append(items.at_first, values), np.append(values, items.at_last),
+        )  # fmt: skip
+
+
+def _angle(a: Array, b: Array) -> float:
+    """Angle between two attitudes (4,) [rad]."""
+    ends = float(np.linalg.norm(a - b)), float(np.linalg.norm(a + b))
+    return 4.0 * float(np.arctan2(min(ends), max(ends)))

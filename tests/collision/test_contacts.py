@@ -1,0 +1,94 @@
+"""Contacts: all pairs that touch, each with its depth, against closed forms of spheres."""
+
+from itertools import pairwise, product
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+from ffsr_plan.collision.contacts import contacts, goal_in_collision, start_in_collision
+from ffsr_plan.robots.loading import robot_from_urdf
+from tests.helpers.urdf_builders import inertial, joint, link, sphere, urdf
+
+BALLS = {"base": (0.5, 0.0), "near": (0.4, 1.0), "far": (0.3, 2.0), "end": (0.2, 3.0)}
+
+
+@pytest.fixture(scope="module")
+def chain():
+    """Four balls a metre apart along x; each is hinged to the one before."""
+    parts = [
+        link(name, inertial(1.0, (0.1,) * 3), sphere(radius)) for name, (radius, _) in BALLS.items()
+    ]
+    names = list(BALLS)
+    joints = [
+        joint(f"j_{after}", "revolute", before, after, (1.0, 0, 0))
+        for before, after in pairwise(names)
+    ]
+    return robot_from_urdf(urdf(*parts, *joints), "chain")
+
+
+def test_every_pair_that_touches_is_listed_with_its_depth(chain):
+    rng = np.random.default_rng(1)
+    centers, radii = rng.uniform((-1, -1, -1), (4, 1, 1), (40, 3)), rng.uniform(0.2, 0.8, 40)
+    scene = fp.Scene(centers[:25], radii[:25]).named("a.stl") + fp.Scene(centers[25:], radii[25:])
+    found = contacts(chain, scene, chain.configuration())
+    expected = {}
+    for (name, (radius, x)), k in product(BALLS.items(), range(40)):
+        depth = radius + radii[k] - np.linalg.norm(centers[k] - (x, 0, 0))
+        if depth >= 0.0:
+            expected[name, k] = depth
+    assert len(expected) > 20
+    assert {(c.link, c.obstacle): c.depth for c in found} == pytest.approx(expected, abs=1e-7)
+    assert [c.depth for c in found] == sorted((c.depth for c in found), reverse=True)
+    assert {c.source for c in found if c.obstacle < 25} == {"a.stl"}
+    assert {c.source for c in found if c.obstacle >= 25} == {""}
+
+
+def test_links_that_touch_one_another_are_listed(chain):
+    folded = chain.configuration(joints={"j_far": 2.8})  # the end lies near the ball `near`
+    found = contacts(chain, fp.Scene(), folded)
+    assert [(c.link, c.obstacle) for c in found] == [("near", "end")]
+    apart = 2.0 * np.sin(0.5 * (np.pi - 2.8))
+    assert found[0].depth == pytest.approx(0.6 - apart, abs=1e-6)
+
+
+def test_a_refused_start_names_all_that_touches_there_and_at_the_goal(chain):
+    scene = fp.Scene([[0, 0.6, 0], [3, 0, 0], [9, 0, 0]], [0.2, 0.1, 0.3]).named("b.stl")
+    start = chain.configuration()
+    problem = fp.Problem(chain, scene, start, chain.configuration((9, 0, 0)))
+    with pytest.raises(fp.StartInCollision) as raised:
+        fp.plan(problem)
+    error = raised.value
+    assert [(c.link, c.obstacle) for c in error.contacts] == [("end", 1), ("base", 0)]
+    assert (error.link, error.obstacle, error.depth) == error.contacts[0][:3]
+    assert [(c.link, c.obstacle) for c in error.goal_contacts] == [("base", 2)]
+    assert "by more than 0.8 m" in str(error)
+
+
+def test_advice_depends_on_what_touches(chain):
+    start = chain.configuration()
+    folded = chain.configuration(joints={"j_far": 2.8})
+    apart = fp.Scene([[0.0, 0.62, 0.0]], [0.2], excess=0.1)
+    assert "a smaller excess of the cover" in str(start_in_collision(chain, apart, start))
+    deep = fp.Scene([[0.0, 0.3, 0.0]], [0.2], excess=0.1)
+    assert "excess" not in str(goal_in_collision(chain, deep, start))
+    assert "SRDF" not in str(goal_in_collision(chain, deep, start))
+    assert "fp.self_collisions" in str(goal_in_collision(chain, fp.Scene(), folded))
+
+
+def test_joints_outside_their_limits_are_named_with_what_touches(robot):
+    joints = dict.fromkeys(robot.joint_names, 0.0)
+    joints |= {"left_1": 3.0, "right_2": -3.0}
+    values = np.array(list(joints.values()))
+    outside = robot.assemble(np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), values)
+    scene = fp.Scene([[0.0, 0.0, 0.0]], [0.1]).named("c.stl")
+    goal = robot.configuration((5.0, 0.0, 0.0))
+    message = (
+        r"start \(joints left_1, right_2\): got \[3.0, -3.0\]; allowed: left_1 -1.8 to 1.8, "
+        r"right_2 -2.6 to 2.6; at these values, link .* inside c.stl \(sphere 0\)"
+    )
+    with pytest.raises(fp.InvalidInput, match=message):
+        fp.Problem(robot, scene, outside, goal)
+    with pytest.raises(fp.InvalidInput, match=r"goal \(joints left_1, right_2\)") as raised:
+        fp.Problem(robot, scene, goal, outside)
+    assert "c.stl" not in str(raised.value)  # where the base is at the goal depends on the mode

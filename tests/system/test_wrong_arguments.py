@@ -1,0 +1,190 @@
+"""Every argument of the public interface, given wrong values: refused by an error of ffsr-plan.
+
+Each call takes good arguments but for one. It may succeed, because some of the values are right for
+some arguments; what it may raise is `FfsrPlanError` alone.
+"""
+
+import itertools
+import webbrowser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+
+ODD_VALUES = [
+    None, 3, -1, 0, "x", "", "a\0b", "n" * 5000, float("nan"), float("inf"), 1e308, 10**400, 10**30,
+    [], {}, (), object(), True, b"x", [None], [[]], ["1", "2", "3"], [True] * 3, {"x": "y"},
+    {3: 4}, np.zeros(3), np.zeros((2, 2)), np.array("x"), np.array([1e400]), 1j, lambda: None, int,
+    Path("a\0b"), "\ud800",
+]  # fmt: skip
+FIELDS = {"joint_acceleration": 1.0, "thruster_acceleration": 1.0}
+
+
+@pytest.fixture(scope="module")
+def plan(robot):
+    problem = fp.Problem(
+        robot,
+        fp.Scene([[1.0, 2.0, 0.0]], [0.3]),
+        robot.neutral(),
+        robot.configuration((2.0, 0.0, 0.0), joints={"left_1": 0.2}),
+        mode="attitude-held",
+        lattice=fp.Lattice(3, fp.Axis(1, 0.2)),
+    )
+    return fp.plan(problem, "lattice-optimum")
+
+
+@pytest.fixture(scope="module")
+def calls(plan, tmp_path_factory):
+    """Public functions and methods with good arguments for them, by name."""
+    folder = tmp_path_factory.mktemp("wrong")
+    problem = plan.problem
+    robot, scene, q = problem.robot, problem.scene, problem.start
+    flight = plan.timed(**FIELDS)
+    view = {"port": 0, "open_browser": False}
+    ball = {"low": [0, 0, 0], "high": [1, 1, 1], "radii": [0.1, 0.2]}
+    scene.to_csv(folder / "s.csv")
+    plan.save(folder / "plan.json")
+    np.save(folder / "s.npy", [[0.0, 0.0, 0.0, 1.0]])
+
+    def show_and_go_on(**given):
+        return plan.show(**given, block=False)
+
+    settings = {
+        fp.Axis: {"half_count": 1, "spacing": 0.1},
+        fp.Lattice: {"divisions": 3, "lateral": None, "normal": None, "postures": ()},
+        fp.PostureAxis: {"joints": {"left_1": 1.0}, "half_count": 1, "spacing": 0.1},
+        fp.PostureTarget: {"towards": "stowed", "levels": 2},
+        fp.PostureAxis.towards: {"posture": "stowed", "levels": 2},
+        fp.AntSystem: vars(fp.AntSystem()),
+        fp.MaxMinAntSystem: vars(fp.MaxMinAntSystem()),
+        fp.PostureAnnealing: vars(fp.PostureAnnealing()),
+        fp.Problem: vars(problem),
+        fp.Bus: {"size": [1, 1, 1], "mass": 3.0, "inertia": None, "center_of_mass": [0, 0, 0],
+                 "panels": ()},
+        fp.Panel: {"size": [1, 1, 1], "position": [1, 0, 0], "mass": 1.0, "attitude": [0, 0, 0],
+                   "name": "p"},
+        fp.Mount: {"arm": "ur3", "position": [0, 0, 0], "attitude": [0, 0, 0], "prefix": "a_",
+                   "locked": {}, "srdf": None},
+        fp.Scene: {"centers": [[0, 0, 0]], "radii": [1.0], "excess": 0.0},
+    }  # fmt: skip
+    return {
+        **settings,
+        fp.Scene.from_csv: {"path": folder / "s.csv"},
+        fp.Scene.from_numpy: {"path": folder / "s.npy"},
+        fp.Scene.from_mesh: {"mesh": _Box(), "excess": 0.3, "scale": 1.0, "position": [0, 0, 0],
+                             "attitude": [0, 0, 0], "inside": True},
+        scene.to_csv: {"path": folder / "t.csv"},
+        fp.generators.cloud: {"seed": 1, "count": 2, **ball, "spared": ()},
+        fp.generators.belt: {"seed": 1, "count": 2, "radius": 3.0, "thickness": 1.0,
+                             "radii": [0.1, 0.2], "center": [0, 0, 0], "attitude": [0, 0, 0],
+                             "arc": [0, 1], "spared": ()},
+        fp.generators.scatter: {"seed": 1, "counts": [1, 2], "low": [0, 0], "high": [1, 1],
+                                "radii": [0.1, 0.2]},
+        fp.generators.truss: {"begin": [0, 0, 0], "end": [1, 0, 0], "width": 0.3, "bays": 1,
+                              "radius": 0.1, "roll": 0.0},
+        fp.generators.gate: {"along": 1.0, "aside": 0.0, "opening": 1.0, "radius": 0.1},
+        fp.load_robot: {"source": "point", "package_dirs": (), "srdf": None, "meshes": "hull",
+                        "cylinders": "hull"},
+        fp.load_scenario: {"source": "fig2a"},
+        fp.Scenario.load: {"source": "fig2a"},
+        fp.compose: {"bus": fp.Bus([1, 1, 1], 9.0), "arms": [], "name": "s", "shapes": "boxes",
+                     "postures": None, "may_touch": ()},
+        fp.plan: {"problem": problem, "planner": "lattice-optimum", "seed": 0, "refine": False,
+                  "colonies": 1, "workers": 1, "time_limit": None, "on_cycle": None},
+        fp.refine: {"plan": plan},
+        fp.clearance: {"robot": robot, "scene": scene, "q": q},
+        fp.certify_edge: {"robot": robot, "scene": scene, "start": q, "goal": problem.goal,
+                          "mode": "free-flying", "tolerance": 1e-3},
+        fp.inverse_kinematics: {"robot": robot, "scene": None, "frame": "left_3",
+                                "position": [0.4, 0.5, 0.0], "attitude": None, "start": q,
+                                "mode": "attitude-held", "base_position": None,
+                                "base_attitude": None, "seed": 0},
+        problem.reaching: {"frame": "left_3", "position": [2.0, 1.0, 0], "attitude": None,
+                           "seed": 0},
+        fp.momentum.connection: {"robot": robot, "q": q},
+        fp.momentum.attitude_rate_map: {"robot": robot, "q": q},
+        fp.momentum.generalized_jacobian: {"robot": robot, "q": q, "frame": "left_3"},
+        fp.LayeredLattice: {"problem": problem},
+        fp.Roadmap: {"problem": problem},
+        fp.LiveView: {"problem": problem, **view, "pace": 0.0, "title": "t"},
+        robot.configuration: {"position": [0, 0, 0], "attitude": [0, 0, 0], "joints": {}},
+        robot.components: {"q": q},
+        robot.paper_vector: {"q": q},
+        robot.from_paper_vector: {"vector": np.zeros(robot.nd + 6)},
+        robot.save: {"path": folder / "r.urdf"},
+        plan.at: {"s": 0.5},
+        plan.wheel_momentum: {"duration": 3.0, "times": None},
+        plan.verify: {"samples": 5},
+        plan.save: {"path": folder / "p.json"},
+        fp.Plan.load: {"path": folder / "plan.json"},
+        fp.Plan.from_dict: {"data": plan.to_dict()},
+        plan.to_csv: {"path": folder / "p.csv", "samples": 3},
+        plan.write_html: {"path": folder / "p.html", "title": "t"},
+        plan.write_gif: {"path": folder / "p.gif", "frames": 2, "width": 300, "view": "path"},
+        show_and_go_on: {**view, "title": "t"},
+        plan.timed: FIELDS | dict.fromkeys(
+            ("joint_velocity", "base_velocity", "joint_torque", "joint_jerk", "thruster_jerk",
+             "turn_velocity", "turn_acceleration")) | {"velocity_jump": 0.0},
+        flight.at: {"times": [0.0]},
+        flight.clock: {"rate": 1.0},
+        flight.to_csv: {"path": folder / "f.csv", "rate": 1.0},
+    }  # fmt: skip
+
+
+class _Box:
+    """A cube, as an object with triangles."""
+
+    def __init__(self):
+        import trimesh
+
+        self.triangles = trimesh.creation.box((1.0, 1.0, 1.0)).triangles
+
+
+def no_browser():
+    raise webbrowser.Error
+
+
+def finish(result):
+    """Stop servers."""
+    if hasattr(result, "stop"):
+        result.stop()
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_wrong_arguments_are_refused_by_errors_of_the_package(calls, tmp_path, monkeypatch):
+    monkeypatch.setattr(webbrowser, "get", no_browser)
+    monkeypatch.chdir(tmp_path)  # some of the values are names of files that can be written
+    tried, escaped, sentences = 0, [], []
+    for function, arguments in calls.items():
+        finish(function(**arguments))
+        for name, value in itertools.product(arguments, ODD_VALUES):
+            tried += 1
+            try:
+                finish(function(**arguments | {name: value}))
+            except fp.FfsrPlanError as error:
+                sentences.append(str(error))
+            except Exception as error:
+                shown = f"{type(value).__name__} {str(value)[:20]!r}"
+                escaped.append(f"{function.__qualname__}({name}={shown}): {error!r:.120}")
+    assert not escaped, f"{len(escaped)}: " + "\n".join(escaped[:40])
+    assert all(sentence.isprintable() for sentence in sentences)
+    assert tried > 5000
+
+
+def test_the_interface_is_covered(calls):
+    """Every public function, and every public class that users make, is among the calls."""
+    made_by_the_package = {
+        "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof", "History",
+        "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement", "Report",
+        "RobotSummary", "Scenario", "SearchResult", "Solution", "SpaceRobot", "States",
+        "TimedPlan", "Trails", "Verdict", "WheelMomentum",
+    }  # fmt: skip
+    without_arguments = {"arm_names", "robot_names", "robot_summaries"}
+    errors = {name for name in fp.__all__ if isinstance(getattr(fp, name), type)
+              and issubclass(getattr(fp, name), Exception)}  # fmt: skip
+    covered = {function.__name__ for function in calls}
+    modules = {"errors", "generators", "momentum"}
+    missing = set(fp.__all__) - covered - made_by_the_package - without_arguments - errors - modules
+    assert not missing
