@@ -48,8 +48,8 @@ class Plan(PlanData):
 
         It rests at every corner of the path, where a velocity would have to change at once.
         A quantity without a value is not limited; `joint_velocity`, and where the URDF has such
-        limits `joint_acceleration` and `joint_jerk`, default to the URDF's. Limits
-        for joints are one number for all of them, or numbers by joint name.
+        limits `joint_acceleration` and `joint_jerk`, default to the URDF's. Limits for joints are
+        one number for all of them, or numbers by joint name.
 
         Args:
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves; the URDF's for joints
