@@ -47,17 +47,19 @@ class Plan(PlanData):
         """The plan flown as fast as limits allow, from rest to rest, on exactly the proven path.
 
         It rests at every corner of the path, where a velocity would have to change at once.
-        A quantity without a value is not limited; `joint_velocity` defaults to the URDF's. Limits
-        for joints are one number for all of them, or numbers by joint name.
+        A quantity without a value is not limited; `joint_velocity`, and where the URDF has such
+        limits `joint_acceleration` and `joint_jerk`, default to the URDF's. Limits for joints are
+        one number for all of them, or numbers by joint name.
 
         Args:
-            joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
+            joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves; the URDF's for joints
+                not named.
             thruster_acceleration: of the base origin, and thrust / mass [m/s^2]. This and
                 other limits of thrusters and of the base's velocity are refused where it floats.
             joint_velocity: [rad/s or m/s]; the URDF's for joints not named.
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
-            joint_jerk: [rad/s^3 or m/s^3].
+            joint_jerk: [rad/s^3 or m/s^3]; the URDF's for joints not named.
             thruster_jerk: of the base origin [m/s^3].
             turn_velocity: angular velocity of a base that wheels rotate [rad/s]; refused without
                 wheels, as the next.
