@@ -13,6 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ffsr_plan.collision.distances import Clearance, clearance
+from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
 from ffsr_plan.core import errors
 from ffsr_plan.core.errors import (
     AttitudeOutOfReach,
@@ -49,8 +50,9 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.single_edge_proof import EdgeProof, certify_edge
 from ffsr_plan.robots.collision_shapes import Replacement
+from ffsr_plan.robots.components import Components
 from ffsr_plan.robots.loading import load_robot, robot_names
-from ffsr_plan.robots.robot import Components, SpaceRobot
+from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.summary import RobotSummary, robot_summaries
 from ffsr_plan.robots.urdf.inertias import Balanced
 from ffsr_plan.robots.urdf.joints import RateLimits
@@ -120,6 +122,8 @@ __all__ = [
     "Scenario",
     "Scene",
     "SearchResult",
+    "SelfCollision",
+    "SelfCollisions",
     "Solution",
     "SpaceRobot",
     "StartInCollision",
@@ -145,6 +149,7 @@ __all__ = [
     "refine",
     "robot_names",
     "robot_summaries",
+    "self_collisions",
 ]
 
 _LAZY = {  # modules that take time to import and that not every script needs

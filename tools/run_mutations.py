@@ -2,9 +2,8 @@
 
     python -m tools.run_mutations [--sample N --seed S] [--file PATTERN] [--workers 2] [--list]
 
-Every mutation is applied in a copy of the repository, and its test is run there. Numba does not
-notice that a kernel changes if another file that it calls or takes a constant from does, so the
-compiled kernels of the mutated file, and of all that use it, are removed from the copy.
+Every mutation is applied in a copy of the repository, and its test is run there. Kernels that the
+mutation changes are compiled for it alone (`ffsr_plan.core.kernel_cache`).
 """
 
 from __future__ import annotations
@@ -36,7 +35,6 @@ MUTATIONS = ROOT / "tests" / "mutations.toml"
 LEFT_OUT = (".*", "__pycache__", "*.egg-info", "site", "build", "dist", "ffsr-demo*")
 TIME_LIMIT = 300.0  # [s] of one test; a mutation that makes it run longer counts as killed
 PASSED, FAILED = 0, 1  # exit statuses of pytest
-KERNEL = re.compile(r"^@(njit|kernel|inlined_kernel)\b", re.MULTILINE)
 REASON = re.compile(r"^(?:FAILED|ERROR|SKIPPED) .*? - (.*)$", re.MULTILINE)
 
 
@@ -109,23 +107,6 @@ def run_pytest(
             return None, ""
 
 
-def forget_kernels(root: Path, file: str) -> None:
-    """Remove the compiled kernels of a file, and of all kernels that use it, from a copy."""
-    paths = [*(root / "ffsr_plan").rglob("*.py"), *(root / "tests").rglob("*.py")]
-    texts = {path: path.read_text(encoding="utf-8") for path in paths}
-    kernels = {path for path, text in texts.items() if KERNEL.search(text)}
-    changed, waiting = set[Path](), [root / file]
-    while waiting:
-        path = waiting.pop()
-        changed.add(path)
-        module = ".".join(path.relative_to(root).with_suffix("").parts)
-        named = re.compile(rf"\b{re.escape(module)}\b")
-        waiting += [each for each in kernels - changed if named.search(texts[each])]
-    for path in changed & kernels:
-        for cached in (path.parent / "__pycache__").glob(f"{path.stem}.*.nb?"):
-            cached.unlink()
-
-
 def run_mutation(base: Path, mutation: Mutation) -> Result:
     """Apply one mutation in a copy of `base` and run its test there."""
     begin = time.monotonic()
@@ -136,7 +117,6 @@ def run_mutation(base: Path, mutation: Mutation) -> Result:
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
         copy = Path(folder) / "copy"
         shutil.copytree(base, copy)
-        forget_kernels(copy, mutation.file)
         mutated = text.replace(mutation.old, mutation.new)
         (copy / mutation.file).write_text(mutated, encoding="utf-8")
         status, output = run_pytest(copy, [mutation.test], TIME_LIMIT)

@@ -9,8 +9,14 @@ from functools import cache, cached_property, update_wrapper
 from threading import Timer
 from typing import Any, Literal, TypeVar, cast
 
+from ffsr_plan.core.kernel_cache import keep_on_disk
+
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 _NOTICE = "compiling numerical kernels, once after an installation (some ten seconds in all)"
+_NOT_KEPT = (
+    "compiling numerical kernels (some ten seconds in all), at every start: the cache directory "
+    "cannot be written; NUMBA_CACHE_DIR can name another one"
+)
 
 
 class Kernel:
@@ -18,8 +24,8 @@ class Kernel:
 
     The module of a kernel can be imported without numba, whose import takes a second. Kernels call
     one another by their plain names: numba asks a global of unknown type for `_numba_type_`, and a
-    kernel returns the type of its dispatcher. The machine code is cached on disk and releases the
-    GIL.
+    kernel returns the type of its dispatcher. The machine code is kept on disk (`kernel_cache`) and
+    releases the GIL.
 
     Attributes:
         py_func: the Python function.
@@ -37,9 +43,10 @@ class Kernel:
         """The numba dispatcher, made at the first use."""
         from numba import njit
 
-        _install_notice()
         inline = self.targetoptions["inline"]
-        return njit(cache=True, nogil=True, inline=inline)(self.py_func)
+        dispatcher = njit(nogil=True, inline=inline)(self.py_func)
+        _install_notice(keep_on_disk(dispatcher))
+        return dispatcher
 
     @property
     def _numba_type_(self) -> object:
@@ -74,12 +81,14 @@ def inlined_kernel(function: _Function) -> _Function:
 
 
 @cache
-def _install_notice() -> None:
+def _install_notice(kept: bool) -> None:
     """Write one notice to standard error when a kernel of this package starts to compile.
 
-    Numba reports compilations as events; loading from its cache on disk is none.
+    Numba reports compilations as events; loading machine code from disk is none.
     """
     from numba.core import event
+
+    notice = _NOTICE if kept else _NOT_KEPT
 
     class Notice(event.Listener):
         def __init__(self) -> None:
@@ -89,7 +98,7 @@ def _install_notice() -> None:
             module = event.data["dispatcher"].py_func.__module__
             if not self.shown and module.startswith("ffsr_plan."):
                 self.shown = True
-                print(f"ffsr-plan: {_NOTICE}", file=sys.stderr, flush=True)
+                print(f"ffsr-plan: {notice}", file=sys.stderr, flush=True)
 
         def on_end(self, event: Any) -> None:  # noqa: ANN401
             pass

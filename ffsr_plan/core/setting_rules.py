@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 from numpy.typing import ArrayLike
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, ReadOnlyDict
 from ffsr_plan.core.checks import finite_array, number, one_of, path, truth, whole_number
 from ffsr_plan.core.errors import InvalidInput, nearest_name
 from ffsr_plan.core.settings import Given, UnknownKey, from_mapping
@@ -221,7 +221,7 @@ class Numbers(Rule):
 
 @dataclass(frozen=True)
 class NamedNumbers(Rule):
-    """Numbers by name, such as joint values.
+    """Numbers by name, such as joint values, kept read-only.
 
     Attributes:
         meaning: what they are, for errors.
@@ -229,11 +229,15 @@ class NamedNumbers(Rule):
 
     meaning: str = "joint names with their values"
 
-    def check(self, what: str, value: object, others: Mapping[str, Any]) -> dict[str, float]:
+    def check(
+        self, what: str, value: object, others: Mapping[str, Any]
+    ) -> ReadOnlyDict[str, float]:
         """See `Rule.check`."""
         if not isinstance(value, Mapping):
             raise InvalidInput(what, value, self.meaning)
-        return {str(name): number(f"{what}.{name}", each) for name, each in value.items()}
+        return ReadOnlyDict(
+            {str(name): number(f"{what}.{name}", each) for name, each in value.items()}
+        )
 
     def json_schema(self) -> dict[str, Any]:
         """See `Rule.json_schema`."""

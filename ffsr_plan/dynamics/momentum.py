@@ -11,10 +11,9 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.rotations import IDENTITY, angle_rate_matrix, to_angles
-from ffsr_plan.robots.kinematics import turned
+from ffsr_plan.robots.kinematics import frame_index, turned
 from ffsr_plan.robots.robot import SpaceRobot
 
 
@@ -134,7 +133,7 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
     Args:
         robot: the robot.
         q: (nq,) configuration.
-        frame: name of a link, joint or other frame of the model.
+        frame: name of a link, joint or other frame of the model; the link of several of one name.
 
     Returns:
         (6, nd) matrix J*.
@@ -144,13 +143,11 @@ def generalized_jacobian(robot: SpaceRobot, q: ArrayLike, frame: str) -> Array:
     """
     q = _configuration(robot, q)
     model = robot.model
-    one_of("frame", frame, [f.name for f in model.frames])
+    index = frame_index(robot.model, frame)
     data = model.createData()
     pin.computeCentroidalMap(model, data, q)
     momentum_map = np.array(data.Ag)
-    jacobian = pin.computeFrameJacobian(
-        model, data, q, model.getFrameId(frame), pin.LOCAL_WORLD_ALIGNED
-    )
+    jacobian = pin.computeFrameJacobian(model, data, q, index, pin.LOCAL_WORLD_ALIGNED)
     base_rate = np.linalg.solve(momentum_map[:, :6], momentum_map[:, 6:])
     return jacobian[:, 6:] - jacobian[:, :6] @ base_rate
 

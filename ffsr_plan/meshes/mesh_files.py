@@ -1,4 +1,4 @@
-"""Mesh files: addresses as in a URDF, triangles, and corners of convex hulls."""
+"""Mesh files: triangles, and corners of convex hulls."""
 
 from __future__ import annotations
 
@@ -9,28 +9,17 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.text_files import is_lfs_pointer
+from ffsr_plan.meshes.collada_files import read_dae
+from ffsr_plan.meshes.mesh_addresses import found
+from ffsr_plan.meshes.ply_files import read_ply
+from ffsr_plan.meshes.triangle_files import read_obj, read_stl
 
-_SUFFIXES = (".stl", ".obj", ".dae", ".ply")
-
-
-def find(address: str, folders: Sequence[str]) -> Path | None:
-    """Look up a mesh address.
-
-    Nothing is downloaded: an address with another scheme has no file.
-
-    Args:
-        address: `package://...`, `file://...` or a plain path.
-        folders: folders in which package and relative addresses are looked up, in this order.
-
-    Returns:
-        Path of the file; None if there is none.
-    """
-    scheme, divider, rest = address.rpartition("://")
-    if divider and scheme not in ("package", "file"):
-        return None
-    whole = scheme == "file" or Path(rest).is_absolute()
-    places = [Path(rest)] if whole else [Path(folder) / rest for folder in folders]
-    return next((place for place in places if place.is_file()), None)
+MOST_BYTES, MOST_TRIANGLES = 100_000_000, 1_000_000
+"""Limits of a mesh file, by which memory stays below 2 GB."""
+FARTHEST = 1e9
+"""Limit of coordinates in the unit of the file; beyond it the digits of a mesh are lost."""
+_READERS = {".stl": read_stl, ".obj": read_obj, ".dae": read_dae, ".ply": read_ply}
 
 
 def hull_corners(address: str, folders: Sequence[str], where: str) -> Array:
@@ -39,7 +28,7 @@ def hull_corners(address: str, folders: Sequence[str], where: str) -> Array:
     The unit of length of a .dae file is applied; its up axis is ignored.
 
     Args:
-        address: address of the file; see `find`.
+        address: address of the file; see `mesh_addresses.find`.
         folders: folders in which it is looked up.
         where: robot and link, for the message.
 
@@ -57,7 +46,7 @@ def surface(address: str, folders: Sequence[str], where: str) -> Array:
     """Triangles of a mesh, before the scale of the URDF; see `hull_corners`.
 
     Args:
-        address: address of the file; see `find`.
+        address: address of the file; see `mesh_addresses.find`.
         folders: folders in which it is looked up.
         where: robot and link, for the message.
 
@@ -72,32 +61,59 @@ def surface(address: str, folders: Sequence[str], where: str) -> Array:
 
 
 def _mesh(address: str, folders: Sequence[str], where: str) -> tuple[Array, IntArray]:
-    """Vertices (n, 3) [m], their unit applied, and triangles (k, 3)."""
-    path = find(address, folders)
-    if path is None:
-        searched = ", ".join(folders) or "no folder"
-        raise InvalidInput(
-            where, address, f"a file of this machine (package:// and plain paths: in {searched})"
-        )
-    if path.suffix.lower() not in _SUFFIXES:
-        raise InvalidInput(where, address, f"a mesh file: {', '.join(_SUFFIXES)}")
+    """Vertices (n, 3) [m], their unit applied, and triangles (k, 3); equal vertices are merged."""
+    path = found(address, folders, where)
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InvalidInput(where, address, f"a mesh file: {', '.join(_READERS)}")
+    content = _content(path, address, where)
     try:
-        vertices, triangles = _read(path)
-    except Exception as error:  # parsers raise many types for a file of arbitrary content
+        vertices, faces = reader(content)
+    except ValueError as error:
         raise InvalidInput(where, address, f"a mesh file that can be read ({error})") from None
-    if len(vertices) < 4 or not np.isfinite(vertices).all():
-        raise InvalidInput(where, address, "a mesh of at least four finite vertices")
-    return vertices, triangles
+    if len(faces) == 0:
+        raise InvalidInput(where, f"{address} without triangles", "a mesh with triangles")
+    if len(faces) > MOST_TRIANGLES:
+        allowed = f"at most {MOST_TRIANGLES}; a coarser mesh"
+        raise InvalidInput(where, f"{address} of {len(faces)} triangles", allowed)
+    beyond = ~(np.abs(vertices) <= FARTHEST).all(axis=1)  # NaN too
+    if beyond.any():
+        k = int(np.argmax(beyond))
+        allowed = f"a mesh of finite vertices, of at most {FARTHEST:g} in the unit of the file"
+        raise InvalidInput(where, f"{address} with vertex {k} at {vertices[k].tolist()}", allowed)
+    return _merged(vertices, faces)
 
 
-def _read(path: Path) -> tuple[Array, IntArray]:
-    import trimesh
+def _content(path: Path, address: str, where: str) -> bytes:
+    """All bytes of a file."""
+    try:
+        size = path.stat().st_size
+        if size > MOST_BYTES:
+            allowed = f"at most {MOST_BYTES / 1e6:g} MB; a coarser mesh"
+            raise InvalidInput(where, f"{address} of {size / 1e6:g} MB", allowed)
+        content = path.read_bytes()
+    except OSError as error:
+        reason = error.strerror or error
+        raise InvalidInput(where, address, f"a mesh file that can be read ({reason})") from None
+    if not content.strip():
+        raise InvalidInput(where, f"{address}, an empty file", "a mesh file")
+    if is_lfs_pointer(content):
+        allowed = "the mesh itself: `git lfs pull` fetches it"
+        raise InvalidInput(where, f"{address}, a pointer of Git LFS", allowed)
+    return content
 
-    scene = trimesh.load_scene(path)
-    scale = trimesh.units.unit_conversion(scene.units, "meters") if scene.units else 1.0
-    mesh = scene.to_mesh()
-    vertices = np.asarray(mesh.vertices, dtype=np.float64) * scale
-    return vertices, np.asarray(mesh.faces, dtype=np.int64)
+
+def _merged(vertices: Array, faces: IntArray) -> tuple[Array, IntArray]:
+    """The same mesh, vertices that agree to 1e-8 made one: text files differ in the last digits."""
+    keys = np.round(vertices * 1e8).astype(np.int64)
+    order = np.lexsort(keys.T)  # equal keys stay in the order of the file
+    differs = np.any(keys[order[1:]] != keys[order[:-1]], axis=1)
+    group = np.concatenate([[0], np.cumsum(differs)])
+    first = order[np.concatenate([[True], differs])]
+    place = np.argsort(np.argsort(first))  # vertices stay in the order of the file
+    inverse = np.empty(len(vertices), dtype=np.int64)
+    inverse[order] = place[group]
+    return vertices[np.sort(first)], inverse[faces]
 
 
 def hull(points: Array, where: str, address: str) -> tuple[Array, Array]:

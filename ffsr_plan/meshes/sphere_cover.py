@@ -44,7 +44,7 @@ class Cover(NamedTuple):
     radii: Array
 
 
-def cover(triangles: Array, excess: float, inside: bool) -> Cover:
+def cover(triangles: Array, excess: float, inside: bool, where: str = "mesh") -> Cover:
     """Cover a surface and the volume that it encloses by spheres.
 
     Args:
@@ -53,6 +53,7 @@ def cover(triangles: Array, excess: float, inside: bool) -> Cover:
         inside: whether to cover the enclosed volume as well as the surface. A point is enclosed if
             the winding number of the surface about it is not zero; the inside of a cavity with a
             closed surface of its own is not enclosed.
+        where: name of the mesh in messages.
 
     Returns:
         The spheres.
@@ -66,9 +67,9 @@ def cover(triangles: Array, excess: float, inside: bool) -> Cover:
     low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
     least = np.sqrt(3.0) * (np.prod(high - low + 3.0 * max(edge, 0.0)) / MOST_CUBES) ** (1.0 / 3.0)
     if edge <= 0.0 or np.prod((high - low) / edge + 3.0) > MOST_CUBES:
-        raise InvalidInput("mesh, excess", excess, f"about {least:.2g} m or more for its size")
+        raise InvalidInput(f"{where}, excess", excess, f"about {least:.2g} m or more for its size")
     if inside:
-        _check_closed(triangles)
+        _check_closed(triangles, where)
     origin = low - 1.5 * edge  # an empty layer all around; flat sides pass through cube centres
     counts = np.ceil((high - origin) / edge + 1.0).astype(np.int64)
     surface = np.zeros(counts, dtype=bool)
@@ -81,7 +82,7 @@ def cover(triangles: Array, excess: float, inside: bool) -> Cover:
     return Cover(np.vstack(centers), np.concatenate(radii))
 
 
-def _check_closed(triangles: Array) -> None:
+def _check_closed(triangles: Array, where: str) -> None:
     """Check that the surface is closed, so that its winding numbers are integers.
 
     The triangles must pass every edge as often in one direction as in the other. The properties
@@ -96,7 +97,7 @@ def _check_closed(triangles: Array) -> None:
     passed = np.bincount(edge.ravel(), weights=np.sign(tips - tails))
     if np.any(passed != 0.0):
         raise InvalidInput(
-            "mesh",
+            where,
             f"{np.count_nonzero(passed)} edges without a neighbour that faces the same way",
             "a closed surface, or inside=False to cover the surface alone",
         )

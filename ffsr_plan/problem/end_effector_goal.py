@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from ffsr_plan.collision.contacts import goal_in_collision
 from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, one_of, whole_number
+from ffsr_plan.core.checks import FARTHEST, finite_array, whole_number
 from ffsr_plan.core.errors import (
     GoalInCollision,
     HeldBase,
@@ -24,6 +24,7 @@ from ffsr_plan.problem.pose_error import (
     pose_error,
     pose_jacobian,
 )
+from ffsr_plan.robots.kinematics import frame_index
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
@@ -65,7 +66,8 @@ def inverse_kinematics(
         robot: the robot.
         scene: obstacles. Joint values at which a link touches one of them, or another link, are
             rejected. If None, collisions are not checked, not even between links.
-        frame: name of a link, joint or other frame of the model, such as a tool.
+        frame: name of a link, joint or other frame of the model, such as a tool; of a link and a
+            joint of one name, the link.
         position: (3,) wanted for the frame's origin, world [m].
         attitude: (3,) wanted for the frame, ZYX angles (alpha, beta, gamma) [rad]; None if any is
             accepted.
@@ -122,7 +124,7 @@ def pose_target(
         raise InvalidInput("robot", robot, "a SpaceRobot")
     if robot.nd == 0:
         raise InvalidInput("robot", robot.name, "a robot with joints")
-    one_of("frame", frame, [f.name for f in robot.model.frames])
+    index = frame_index(robot.model, frame)
     if base_position is not None and mode.floats:
         raise InvalidInput(
             "base_position",
@@ -143,7 +145,7 @@ def pose_target(
         rotation = matrix(from_angles(finite_array("attitude", attitude, (3,))))
     return PoseTarget(
         robot,
-        robot.model.getFrameId(frame),
+        index,
         finite_array("position", position, (3,), FARTHEST),
         rotation,
         mode,

@@ -32,6 +32,10 @@ class JointDirection(Rule):
             pairs = dict(value)
         except (TypeError, ValueError):
             raise InvalidInput(what, value, allowed) from None
+        if len(pairs) < len(value):
+            names = [str(name) for name, _ in value]  # a sequence: a mapping has no name twice
+            twice = sorted({name for name in names if names.count(name) > 1})
+            raise InvalidInput(what, f"{', '.join(twice)} more than once", "each joint once")
         moves = {
             str(name): number(f"{what}.{name}", each, at_least=-1e9, at_most=1e9)
             for name, each in pairs.items()

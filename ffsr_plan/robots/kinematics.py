@@ -20,6 +20,7 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.errors import unknown_name
 from ffsr_plan.core.rotations import cross
 
 
@@ -150,3 +151,23 @@ def _motion_subspaces(model: pin.Model) -> list[Array]:
         joint.calc(data, neutral)
         subspaces.append(np.array(data.S, dtype=np.float64).ravel())
     return subspaces
+
+
+def frame_index(model: pin.Model, frame: object) -> int:
+    """Index of a frame by its name.
+
+    A URDF may give a link and a joint the same name: the link is meant.
+
+    Args:
+        model: the model.
+        frame: name of a link, joint or other frame.
+
+    Raises:
+        InvalidInput: an unknown frame, with the nearest name.
+    """
+    frames = model.frames
+    known = isinstance(frame, str)
+    named = [k for k, each in enumerate(frames) if known and each.name == frame]
+    if not named:
+        raise unknown_name("frame", frame, dict.fromkeys(each.name for each in frames))
+    return next((k for k in named if frames[k].type == pin.FrameType.BODY), named[0])

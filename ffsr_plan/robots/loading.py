@@ -17,6 +17,7 @@ from ffsr_plan.core.errors import InvalidInput, UncheckedLinks, unknown_name
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.collision_shapes import CONTAINERS, Containers, collision_geometry
 from ffsr_plan.robots.loaded_model_checks import compare
+from ffsr_plan.robots.locked_joints import fix_locked_joints
 from ffsr_plan.robots.pinocchio_models import build_model, visual_model
 from ffsr_plan.robots.plausibility import check_bodies
 from ffsr_plan.robots.robot import SpaceRobot
@@ -42,6 +43,7 @@ def load_robot(
     cylinders: str = "hull",
     collision: str = "collision",
     inertia: str = "exact",
+    locked: Mapping[str, float] | None = None,
 ) -> SpaceRobot:
     """Load a robot whose root link floats freely.
 
@@ -51,10 +53,12 @@ def load_robot(
     Args:
         source: name of a bundled robot (see `robot_names`), or path to a `.urdf` file.
         package_dirs: folders in which `package://` and relative mesh addresses are looked up,
-            before the folder of the `.urdf` file.
+            before the folder of the `.urdf` file. A package is also looked for upwards from that
+            folder, and in `ROS_PACKAGE_PATH` and `AMENT_PREFIX_PATH`.
         srdf: path to an SRDF whose `<disable_collisions>` exempt pairs of links from the check for
             self-collision (adjacent links are exempt in any case) and whose `<group_state>`s are
-            the robot's named postures. A bundled robot comes with its own.
+            the robot's named postures. A bundled robot comes with its own. The values of virtual
+            joints, and of joints that do not move, are ignored.
         meshes: what replaces a mesh: `hull`, its convex hull, or `capsule`, a capsule around it.
         cylinders: what replaces a cylinder: `hull`, a prism of 24 sides around it (larger by at
             most 0.9 % of the radius), or `capsule`, the capsule around it with the least excess
@@ -65,6 +69,9 @@ def load_robot(
         inertia: what becomes of an inertia tensor that no body has: `exact` refuses it, `balance`
             takes the nearest one that a body has (see `SpaceRobot.balanced`). Tensors that are
             rounded to a few digits are taken as they are in any case.
+        locked: joints that are fixed, at a value [rad, or m where prismatic]; they are no joints of
+            the robot. Of joints that mimic one another, such as two fingers, name one: the others
+            are fixed with it.
 
     Returns:
         The robot.
@@ -86,9 +93,7 @@ def load_robot(
             raise unknown_name("robot", str(source), [*robot_names(), "or a path to a .urdf file"])
         if not path.is_file():
             raise InvalidInput("robot", str(source), "a bundled robot or an existing .urdf file")
-    if isinstance(package_dirs, (str, Path)) or not isinstance(package_dirs, Sequence):
-        raise InvalidInput("package_dirs", package_dirs, "a list of paths")
-    folders = [*(str(checked_path("package_dirs", p)) for p in package_dirs), str(path.parent)]
+    folders = [*_folders(package_dirs), str(path.parent)]
     srdf_text = "" if srdf is None else read_text("srdf", checked_path("srdf", srdf), "utf-8-sig")
     if srdf is not None and not srdf_text.strip():
         raise InvalidInput("srdf", str(srdf), "a file that is not empty")
@@ -98,9 +103,17 @@ def load_robot(
         containers=Containers(meshes, cylinders),
         collision=collision,
         inertia=inertia,
+        locked=locked,
     )  # fmt: skip
     warn_of_shapeless_links(robot)
     return robot
+
+
+def _folders(package_dirs: object) -> list[str]:
+    """Folders of `load_robot`, as texts."""
+    if isinstance(package_dirs, (str, Path)) or not isinstance(package_dirs, Sequence):
+        raise InvalidInput("package_dirs", package_dirs, "a list of paths")
+    return [str(checked_path("package_dirs", each)) for each in package_dirs]
 
 
 def robot_from_urdf(
@@ -113,6 +126,7 @@ def robot_from_urdf(
     meshes: Mapping[str, Array] | None = None,
     collision: str = "collision",
     inertia: str = "exact",
+    locked: Mapping[str, float] | None = None,
 ) -> SpaceRobot:
     """Make a robot from URDF and SRDF texts; see `load_robot`.
 
@@ -125,6 +139,7 @@ def robot_from_urdf(
         meshes: (n, 3) hull corners by address (see `SpaceRobot.meshes`), which need no file.
         collision: see `load_robot`.
         inertia: see `load_robot`.
+        locked: see `load_robot`.
 
     Returns:
         The robot.
@@ -137,6 +152,7 @@ def robot_from_urdf(
         one_of(what, kind, CONTAINERS)
     folders, corners = list(package_dirs), dict(meshes or {})
     root = read_urdf(text, name, collision=collision, inertia=inertia)
+    fix_locked_joints(root, locked, name)
     check_movable(root, name)
     model = build_model(root, name)
     shapes, replacements = collision_geometry(model, root, name, folders, containers, corners)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Sequence
 from xml.etree import ElementTree
 
 import pinocchio as pin
 
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.meshes.mesh_files import find
+from ffsr_plan.meshes.mesh_addresses import find
 
 
 def build_model(robot: ElementTree.Element, where: str) -> pin.Model:
@@ -44,11 +45,18 @@ def visual_model(
     Returns:
         The visual shapes; none if Pinocchio refuses them.
     """
+    robot = copy.deepcopy(robot)
+    missing = []
+    for mesh in robot.iterfind("link/visual/geometry/mesh"):
+        path = find(mesh.get("filename", ""), folders)
+        if path is None:
+            missing.append(mesh)
+        else:  # Pinocchio does not look where `find` does
+            mesh.set("filename", str(path.absolute()))
 
     def readable(shape: ElementTree.Element) -> bool:
-        mesh = shape.find("geometry/mesh")
-        missing = mesh is not None and find(mesh.get("filename", ""), folders) is None
-        return shape.tag == "visual" and not missing and shape.find("geometry/capsule") is None
+        unknown = shape.find("geometry/capsule") is not None
+        return shape.tag == "visual" and not unknown and shape.find("geometry/mesh") not in missing
 
     text, kind = _with_shapes(robot, readable), pin.GeometryType.VISUAL
     try:
@@ -59,12 +67,12 @@ def visual_model(
 
 def _with_shapes(robot: ElementTree.Element, wanted: Callable[[ElementTree.Element], bool]) -> str:
     """Text of a robot, of its shapes only those that are wanted."""
-    copy = ElementTree.Element(robot.tag, robot.attrib)
+    stripped = ElementTree.Element(robot.tag, robot.attrib)
     for part in robot:
         if part.tag != "link":
-            copy.append(part)
+            stripped.append(part)
             continue
-        link = ElementTree.SubElement(copy, "link", part.attrib)
+        link = ElementTree.SubElement(stripped, "link", part.attrib)
         shapes = ("visual", "collision")
         link.extend(own for own in part if own.tag not in shapes or wanted(own))
-    return ElementTree.tostring(copy, encoding="unicode")
+    return ElementTree.tostring(stripped, encoding="unicode")

@@ -6,13 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, equal_by_content, frozen
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, unknown_name
@@ -23,6 +22,7 @@ from ffsr_plan.robots.collision_shapes import (
     Containers,
     Replacement,
 )
+from ffsr_plan.robots.components import Components
 from ffsr_plan.robots.kinematics import Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import named_postures
@@ -30,21 +30,6 @@ from ffsr_plan.robots.urdf.inertias import Balanced
 from ffsr_plan.robots.urdf.joints import RateLimits
 
 _HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
-
-
-@equal_by_content
-class Components(NamedTuple):
-    """Parts of one configuration, or of N.
-
-    Attributes:
-        position: (3,) or (N, 3) base origin in the world [m].
-        attitude: (3,) or (N, 3) ZYX angles alpha, beta, gamma of Eq. 2 [rad].
-        joints: joint values by name [rad, or m where prismatic]: a float each, or (N,).
-    """
-
-    position: Array
-    attitude: Array
-    joints: dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,6 +107,7 @@ class SpaceRobot:
         prismatic = [j.shortname().startswith("JointModelP") for j in joints]
         limits = dict(zip(names, zip(lower, upper, strict=True), strict=True))
         rates = [self.rate_limits.get(name, RateLimits(np.inf, np.inf)) for name in names]
+        fixed = [f.name for f in self.model.frames if f.type == pin.FrameType.FIXED_JOINT]
         derived = {
             "joint_names": names,
             "lower": frozen(np.array(lower, dtype=np.float64)),
@@ -133,7 +119,7 @@ class SpaceRobot:
                 {
                     name: ReadOnlyDict(values)
                     for name, values in named_postures(
-                        self.srdf, f"{self.name}, SRDF", limits
+                        self.srdf, f"{self.name}, SRDF", limits, fixed
                     ).items()
                 }
             ),
@@ -199,8 +185,11 @@ class SpaceRobot:
         return tuple(frame.name for frame in frames if frame.type == pin.FrameType.BODY)
 
     def neutral(self) -> Array:
-        """(nq,) configuration with the base at the world's origin and all joint values zero."""
-        return self.assemble(np.zeros(3), IDENTITY, np.zeros(self.nd))
+        """(nq,) configuration with the base at the world's origin and all joint values zero.
+
+        A joint whose limits exclude zero is at the limit nearest to it.
+        """
+        return self.assemble(np.zeros(3), IDENTITY, self._nearest_to_zero())
 
     def configuration(
         self,
@@ -231,7 +220,7 @@ class SpaceRobot:
         if joints is not None and not isinstance(joints, Mapping):
             allowed = "a mapping from joint names to values, or the name of a posture"
             raise InvalidInput("joints", joints, allowed)
-        values = np.zeros(self.nd)
+        values = self._nearest_to_zero()
         for name, value in (joints or {}).items():
             if name not in self.joint_names:
                 raise unknown_name("joints", name, self.joint_names)
@@ -239,6 +228,10 @@ class SpaceRobot:
         self.check_limits("joints", values)
         quat = from_angles(finite_array("attitude", attitude, (3,)))
         return self.assemble(finite_array("position", position, (3,), FARTHEST), quat, values)
+
+    def _nearest_to_zero(self) -> Array:
+        """(nd,) joint values nearest to zero within the limits [rad or m]."""
+        return np.clip(np.zeros(self.nd), self.lower, self.upper)
 
     def components(self, q: ArrayLike) -> Components:
         """Base position, base attitude and joint values of configurations.

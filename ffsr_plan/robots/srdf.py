@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from xml.etree import ElementTree
 
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.robots.urdf.number_texts import numbers
@@ -44,17 +45,22 @@ def disabled_pairs(text: str, where: str, links: Sequence[str]) -> tuple[tuple[s
 
 
 def named_postures(
-    text: str, where: str, limits: Mapping[str, tuple[float, float]]
+    text: str,
+    where: str,
+    limits: Mapping[str, tuple[float, float]],
+    unmoved: Sequence[str] = (),
 ) -> dict[str, dict[str, float]]:
     """Postures of the `<group_state>` elements.
 
     A posture contains only the joints that it lists. States of one name in several groups are one
-    posture.
+    posture. Values of virtual joints, by which an SRDF names the free base, and of joints that do
+    not move are ignored; a state of such joints alone is no posture.
 
     Args:
         text: the SRDF; empty for none.
         where: file or robot name that starts every message.
         limits: lower and upper limit of each of the robot's joints, by name [rad or m].
+        unmoved: names of joints of the URDF that do not move.
 
     Returns:
         Joint values [rad or m] by joint, by name of the posture.
@@ -64,12 +70,18 @@ def named_postures(
             or outside the joint's limits.
     """
     postures: dict[str, dict[str, float]] = {}
-    for state in parse(text, where).findall("group_state") if text else ():
+    root = parse(text, where) if text else ElementTree.Element("robot")
+    ignored = {*unmoved, *(joint.get("name") for joint in root.findall("virtual_joint"))}
+    for state in root.findall("group_state"):
         name = state.get("name")
         if not name:
             raise InvalidInput(f"{where}, group_state", name, "a name")
+        joints = state.findall("joint")
+        listed = [joint for joint in joints if joint.get("name") not in ignored - {*limits}]
+        if joints and not listed:
+            continue
         values = postures.setdefault(name, {})
-        for joint in state.findall("joint"):
+        for joint in listed:
             about, joint_name = f"{where}, group_state '{name}'", joint.get("name")
             if joint_name is None or joint_name not in limits:
                 raise unknown_name(f"{about}, joint", joint_name, limits)

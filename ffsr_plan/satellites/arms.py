@@ -1,24 +1,19 @@
-"""Arms to mount on a bus: their URDFs, and locked joints."""
+"""Arms to mount on a bus: their URDFs."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-import numpy as np
-
-from ffsr_plan.core import rotations
-from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.text_files import read_text
+from ffsr_plan.robots.locked_joints import fix_locked_joints
 from ffsr_plan.robots.srdf import disabled_pairs
 from ffsr_plan.robots.urdf.canonical import read_urdf
-from ffsr_plan.robots.urdf.joints import check_movable, position_limits
-from ffsr_plan.robots.urdf.number_texts import attribute_numbers, attribute_text, numbers
-from ffsr_plan.robots.urdf.origins import roll_pitch_yaw
+from ffsr_plan.robots.urdf.joints import check_movable
 
 _UR = "ur_description/srdf/ur5.srdf"
 ARMS = {
@@ -62,6 +57,7 @@ def load_arm(
     source: str | Path,
     locked: Mapping[str, float],
     srdf: str | Path | None = None,
+    package_dirs: Sequence[str | Path] = (),
     *,
     collision: str | None = None,
     inertia: str = "exact",
@@ -71,11 +67,12 @@ def load_arm(
     Args:
         source: one of `arm_names()`, or a path.
         locked: joints to fix, by the arm's own names, at a value [rad, or m where prismatic].
-            Joints that mimic a locked joint are fixed too, at the value that follows from it.
+            Of joints that mimic one another, one is named and the others follow.
         srdf: path to an SRDF; an arm given by its name has its own, if there is one.
         collision: see `load_robot`; by default `visual` for an arm given by its name, since some
             of these have links with visual shapes only, and `collision` for a file.
         inertia: see `load_robot`.
+        package_dirs: folders in which its meshes are looked up first.
 
     Returns:
         The arm.
@@ -90,8 +87,7 @@ def load_arm(
     if collision is None:
         collision = "collision" if path == Path(source) else "visual"
     robot = read_urdf(text, where, collision=collision, inertia=inertia)
-    mimics = _take_mimics(robot)
-    _lock(robot, mimics, locked, where)
+    fix_locked_joints(robot, locked, where)
     check_movable(robot, where)
     children = {str(child.get("link")) for child in robot.iterfind("joint/child")}
     names = [str(link.get("name")) for link in robot.findall("link")]
@@ -99,7 +95,7 @@ def load_arm(
     srdf_path = own if srdf is None else Path(srdf)
     srdf_text = "" if srdf_path is None else read_text("srdf", srdf_path, "utf-8-sig")
     pairs = disabled_pairs(srdf_text, f"{where}, SRDF", names)
-    return Arm(robot, root, folders, where, pairs)
+    return Arm(robot, root, (*map(str, package_dirs), *folders), where, pairs)
 
 
 def find_arm(source: str | Path) -> tuple[Path, Path | None, tuple[str, ...]]:
@@ -129,65 +125,3 @@ def find_arm(source: str | Path) -> tuple[Path, Path | None, tuple[str, ...]]:
     share = Path(str(data))
     urdf, srdf = (share / "example-robot-data" / "robots" / name for name in ARMS[str(source)])
     return urdf, srdf if srdf.is_file() else None, (str(share),)
-
-
-def _take_mimics(robot: ElementTree.Element) -> dict[str, ElementTree.Element]:
-    """Remove all `<mimic>` elements from the robot; returns those of moving joints by joint."""
-    mimics = {}
-    for joint in robot.findall("joint"):
-        for mimic in joint.findall("mimic"):
-            joint.remove(mimic)
-            if joint.get("type") != "fixed":
-                mimics[str(joint.get("name"))] = mimic
-    return mimics
-
-
-def _lock(
-    robot: ElementTree.Element,
-    mimics: dict[str, ElementTree.Element],
-    locked: Mapping[str, float],
-    where: str,
-) -> None:
-    """Make joints fixed, in place."""
-    joints = {str(j.get("name")): j for j in robot.findall("joint") if j.get("type") != "fixed"}
-    free = [name for name in joints if name not in mimics]
-    values = {}
-    for name, value in locked.items():
-        if name not in free:
-            raise unknown_name(f"{where}, locked", name, free)
-        low, high = position_limits(joints[name])
-        values[name] = number(f"{where}, locked '{name}'", value, at_least=low, at_most=high)
-    for name, mimic in mimics.items():
-        about, leader = f"{where}, joint '{name}', mimic", mimic.get("joint")
-        if leader not in free:
-            raise unknown_name(f"{about} joint", leader, free)
-        if leader not in values:
-            allowed = f"joints that move on their own; lock it with locked={{'{leader}': ...}}"
-            raise InvalidInput(about, leader, allowed)
-        (factor,) = numbers(f"{about} multiplier", mimic.get("multiplier", "1"), 1)
-        (offset,) = numbers(f"{about} offset", mimic.get("offset", "0"), 1)
-        values[name] = factor * values[leader] + offset
-    for name, value in values.items():
-        _fix(joints[name], value)
-
-
-def _fix(joint: ElementTree.Element, value: float) -> None:
-    """Fix a joint at a value [rad or m], in place."""
-    origin = joint.find("origin")
-    if origin is None:
-        origin = ElementTree.SubElement(joint, "origin")
-    position = attribute_numbers(origin, "xyz", "0 0 0")
-    rotation = rotations.from_angles(attribute_numbers(origin, "rpy", "0 0 0")[::-1])
-    element = joint.find("axis")
-    axis = np.array([1.0, 0.0, 0.0]) if element is None else attribute_numbers(element, "xyz")
-    axis /= np.linalg.norm(axis)
-    if joint.get("type") == "prismatic":
-        position = position + rotations.rotate(rotation, value * axis)
-    else:
-        rotation = rotations.multiply(rotation, rotations.exp(value * axis))
-        origin.set("rpy", attribute_text(roll_pitch_yaw(rotations.matrix(rotation))))
-    origin.set("xyz", attribute_text(position))
-    joint.set("type", "fixed")
-    for tag in ("axis", "limit", "dynamics"):
-        for part in joint.findall(tag):
-            joint.remove(part)

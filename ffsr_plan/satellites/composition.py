@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ffsr_plan.core.arrays import ReadOnlyDict
 from ffsr_plan.core.checks import number, one_of
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
@@ -22,7 +23,8 @@ from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, OneOf, Rule, Tex
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.meshes.box_cover import boxes_around
 from ffsr_plan.meshes.hull_reduction import beyond
-from ffsr_plan.meshes.mesh_files import find, hull, surface
+from ffsr_plan.meshes.mesh_addresses import find
+from ffsr_plan.meshes.mesh_files import hull, surface
 from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.loading import robot_from_urdf, warn_of_shapeless_links
 from ffsr_plan.robots.robot import SpaceRobot
@@ -63,6 +65,19 @@ class PathOrName(Rule):
         return value
 
 
+@dataclass(frozen=True)
+class Paths(Rule):
+    """Paths, kept as texts."""
+
+    meaning: str
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> tuple[str, ...]:
+        """See `Rule.check`."""
+        if isinstance(value, (str, Path)) or not isinstance(value, Sequence):
+            raise InvalidInput(what, value, self.meaning)
+        return tuple(str(checked_path(what, each)) for each in value)
+
+
 @settings(of="a mount")
 class Mount:
     """An arm and its place on the bus.
@@ -73,13 +88,15 @@ class Mount:
         attitude: (3,) ZYX angles (alpha, beta, gamma) of that link in the bus frame [rad].
         prefix: put before the names of the arm's links and joints.
         locked: joints of the arm that are fixed, by the arm's own names, at a value [rad, or m
-            where prismatic]; the planner does not move them. If other joints mimic a joint, lock
-            that joint: the others are fixed with it.
+            where prismatic]; the planner does not move them. Of joints that mimic one another,
+            such as two fingers, name one: the others are fixed with it.
         srdf: path to an SRDF of the arm, by whose `<disable_collisions>` links may touch. An arm
             given by its name has its own, if example-robot-data has one.
         collision: what becomes of links with visual and without collision shapes, as in
             `load_robot`; by default `visual` for an arm given by its name, `collision` for a file.
         inertia: `exact` or `balance`, as in `load_robot`.
+        package_dirs: folders in which `package://` and relative mesh addresses are looked up,
+            before the folder of the `.urdf` file; see `load_robot`.
 
     Raises:
         InvalidInput: a value that is not finite, or of another type.
@@ -90,12 +107,15 @@ class Mount:
     attitude: Annotated[Vector, Numbers(3)] = setting(default=(0.0, 0.0, 0.0))
     prefix: Annotated[str, Text("a text, such as 'left_'")] = ""
     locked: Annotated[
-        Given[dict[str, float], Mapping[str, float]],
+        Given[ReadOnlyDict[str, float], Mapping[str, float]],
         NamedNumbers("a mapping from joint names to values"),
     ] = setting(default_factory=dict)
     srdf: Annotated[str | Path | None, PathOrName("a path", optional=True)] = None
     collision: Annotated[str, OneOf(COLLISION)] | None = None
     inertia: Annotated[str, OneOf(INERTIA)] = "exact"
+    package_dirs: Annotated[
+        Given[tuple[str, ...], Sequence[str | Path]], Paths("a list of paths")
+    ] = setting(default=())
 
 
 def compose(
@@ -145,7 +165,8 @@ def compose(
     if not isinstance(may_touch, Sequence) or isinstance(may_touch, (str, bytes)):
         raise InvalidInput("may_touch", may_touch, "pairs of link names")
     loaded = [
-        load_arm(m.arm, m.locked, m.srdf, collision=m.collision, inertia=m.inertia) for m in arms
+        load_arm(m.arm, m.locked, m.srdf, m.package_dirs, collision=m.collision, inertia=m.inertia)
+        for m in arms
     ]
     both = list(zip(loaded, arms, strict=True))
     robot = put_together(bus, both, name, shapes, {} if postures is None else postures, may_touch)

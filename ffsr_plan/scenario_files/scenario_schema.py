@@ -55,6 +55,7 @@ class RobotTable:
         cylinders: what replaces collision cylinders.
         collision: what becomes of links with visual and without collision shapes.
         inertia: what becomes of inertia tensors that no body has.
+        locked: joints that are fixed, at a value [rad or m]; of joints that mimic one another, one.
     """
 
     urdf: Annotated[str, Text("a name or a path", empty=False)]
@@ -65,6 +66,7 @@ class RobotTable:
     cylinders: Container = "hull"
     collision: Annotated[str, OneOf(COLLISION)] = "collision"
     inertia: Annotated[str, OneOf(INERTIA)] = "exact"
+    locked: JointValues = field(default_factory=dict)
 
     def robot(self, folder: Path) -> SpaceRobot:
         """The robot; paths are relative to `folder`."""
@@ -76,6 +78,7 @@ class RobotTable:
             cylinders=self.cylinders,
             collision=self.collision,
             inertia=self.inertia,
+            locked=self.locked,
         )
 
 
@@ -88,7 +91,7 @@ class StartTable:
         attitude: (3,) ZYX angles alpha, beta, gamma [rad].
         posture: name of a posture of the robot, whose joint values are taken.
         joints: joint values by name [rad or m], in place of those of the posture; joints that
-            neither names are at zero.
+            neither names are at zero, or at the limit nearest to it.
     """
 
     position: Position = setting(default=_ORIGIN)
@@ -130,7 +133,7 @@ class GoalTable:
             to bring the base to it.
         posture: name of a posture of the robot, whose joint values are taken.
         joints: joint values by name [rad or m], in place of those of the posture; joints that
-            neither names are at zero.
+            neither names are at zero, or at the limit nearest to it.
         end_effector: pose of a frame, from which the joint values follow by inverse kinematics.
     """
 

@@ -140,8 +140,10 @@ class Scene:
         Raises:
             InvalidInput: a mesh that cannot be read, is not closed, or is too large for the excess.
         """
+        where = "mesh"
         if isinstance(mesh, (str, Path)):
             file = checked_path("mesh", mesh)
+            where = f"mesh {mesh}"
             corners = mesh_files.surface(str(file.absolute()), [], "mesh")
         elif hasattr(mesh, "triangles"):
             corners = finite_array("mesh, triangles", mesh.triangles, (-1, 3, 3))
@@ -153,8 +155,8 @@ class Scene:
         factor = number("scale", scale, above=0.0, at_most=_LARGEST_SCALE)
         triangles = factor * corners @ axes.T + finite_array("position", position, (3,), FARTHEST)
         finite_array("mesh, corners in the world", triangles, (-1, 3, 3), FARTHEST)
-        excess = number("mesh, excess", excess, above=0.0, at_most=FARTHEST)
-        spheres = cover(triangles, excess, truth("inside", inside))
+        excess = number(f"{where}, excess", excess, above=0.0, at_most=FARTHEST)
+        spheres = cover(triangles, excess, truth("inside", inside), where)
         name = Path(mesh).name if isinstance(mesh, (str, Path)) else "mesh"
         return cls(spheres.centers, spheres.radii, excess).named(name)
 

@@ -43,3 +43,16 @@ def test_their_keys_tell_them_apart():
         {"towards", "levels"},
     ]
     assert fp.Lattice(**stored).postures == axes
+
+
+def test_a_joint_that_is_named_twice_is_refused():
+    with pytest.raises(fp.InvalidInput, match="joints: got 'a more than once'"):
+        fp.PostureAxis([("a", 1.0), ("b", 1.0), ("a", 2.0)], 2, 0.1)
+    assert fp.PostureAxis([("a", 1.0), ("b", 2.0)], 2, 0.1).joints == (("a", 1.0), ("b", 2.0))
+
+
+def test_a_wrong_posture_is_found_when_the_problem_is_made(robot):
+    lattice = fp.Lattice(4, postures=[fp.PostureAxis.towards("stoved", 3)])
+    for goal in (robot.configuration((1, 0, 0)), robot.neutral()):  # also where nothing moves
+        with pytest.raises(fp.InvalidInput, match="did you mean 'stowed'"):
+            fp.Problem(robot, fp.Scene(), robot.neutral(), goal, lattice=lattice)

@@ -158,3 +158,22 @@ def test_links_that_touch_at_the_start_say_how_to_exempt_them():
     problem = fp.Problem(robot, fp.Scene(), begin, end, lattice=fp.Lattice(20))
     with pytest.raises(fp.StartInCollision, match="an SRDF can exempt"):
         fp.plan(problem)
+
+
+def test_virtual_and_fixed_joints_in_a_state_are_ignored():
+    text = """<robot name='made'>
+      <virtual_joint name='float' type='floating' parent_frame='world' child_link='base'/>
+      <passive_joint name='j3'/><end_effector name='tool' parent_link='c' group='g'/>
+      <group_state name='home' group='g'>
+        <joint name='float' value='0 0 0 0 0 0 1'/><joint name='j1' value='0.5'/>
+      </group_state>
+      <group_state name='away' group='g'><joint name='float' value='1'/></group_state></robot>"""
+    assert robot_from_urdf(CHAIN, "made", srdf=text).postures == {"home": {"j1": 0.5}}
+    with pytest.raises(fp.InvalidInput, match="group_state 'home', joint: got 'float'"):
+        robot_from_urdf(CHAIN, "made", srdf=text.replace("<virtual_joint name='float'", "<x n='f'"))
+    bolted = CHAIN.replace("name='j3' type='revolute'", "name='j3' type='fixed'")
+    state = "<group_state name='n' group='g'><joint name='j3' value='1'/></group_state>"
+    assert robot_from_urdf(bolted, "made", srdf=f"<robot>{state}</robot>").postures == {}
+    assert robot_from_urdf(CHAIN, "made", srdf=f"<robot>{state}</robot>").postures == {
+        "n": {"j3": 1.0}
+    }

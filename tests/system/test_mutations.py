@@ -6,9 +6,7 @@ import sys
 from collections import Counter
 from functools import cache
 
-import pytest
-
-from tools.run_mutations import ROOT, forget_kernels, read_mutations
+from tools.run_mutations import ROOT, read_mutations
 
 MUTATIONS = read_mutations()
 
@@ -57,36 +55,6 @@ def test_the_named_tests_exist():
         function, bracket, _ = name.partition("[")
         assert function in functions_of(file), label(each)
         assert functions_of(file)[function] or not bracket, label(each)
-
-
-@pytest.mark.parametrize(
-    ("file", "forgotten"),
-    [
-        ("ffsr_plan/low.py", {"low", "middle", "high"}),
-        ("ffsr_plan/middle.py", {"middle", "high"}),
-        ("ffsr_plan/high.py", {"high"}),
-        ("ffsr_plan/constants.py", {"middle", "high"}),
-        ("ffsr_plan/plain.py", set()),
-    ],
-)
-def test_kernels_that_use_a_mutated_file_are_compiled_again(tmp_path, file, forgotten):
-    kernel = "from numba import njit\n@njit(cache=True)\ndef f(): pass\n"
-    package, cached = tmp_path / "ffsr_plan", tmp_path / "ffsr_plan" / "__pycache__"
-    texts = {
-        "low": kernel,
-        "middle": "from ffsr_plan.low import f\nfrom ffsr_plan.constants import C\n" + kernel,
-        "high": "from ffsr_plan import middle\nimport ffsr_plan.middle\n" + kernel,
-        "constants": "C = 1\n",
-        "plain": "from ffsr_plan.high import f\n",
-    }
-    cached.mkdir(parents=True)
-    (tmp_path / "tests").mkdir()
-    for name, text in texts.items():
-        (package / f"{name}.py").write_text(text)
-        (cached / f"{name}.f-1.py311.1.nbc").write_text("")
-    forget_kernels(tmp_path, file)
-    left = {path.name.partition(".")[0] for path in cached.iterdir()}
-    assert left == texts.keys() - forgotten
 
 
 def test_the_list_of_mutations_is_printed():

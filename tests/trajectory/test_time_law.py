@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import linprog
 
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.trajectory.straight_runs import StraightRuns, straight_runs
-from ffsr_plan.trajectory.time_law import time_law
+from ffsr_plan.trajectory.time_law import PulseLimits, time_law
 from tests.helpers.random_motions import USUAL, bent_motion, flown
 
 seeds = st.integers(0, 10_000)
@@ -30,7 +31,8 @@ def test_no_faster_way_passes_the_corners_than_the_one_found(seed):
     runs = StraightRuns(
         corners, np.arange(count), np.arange(count), base, np.zeros((count, 3)), none
     )
-    law, speeds = time_law(runs, (top, push, np.full(count, np.inf)), pulse)
+    at_once = PulseLimits(pulse, 1e12)
+    law, speeds, _ = time_law(runs, (top, push, np.full(count, np.inf)), at_once)
     grid = np.concatenate([np.linspace(a, b, 300) for a, b in pairwise(corners)])
     owner = np.repeat(np.arange(count), 300)
     most = top[owner] ** 2
@@ -47,6 +49,42 @@ def test_no_faster_way_passes_the_corners_than_the_one_found(seed):
     assert np.all(speed**2 <= np.interp(x, grid, highest) + 1e-2)
     middle = np.interp((grid[1:] + grid[:-1]) / 2.0, grid, highest)
     assert law.duration == pytest.approx(np.sum(np.diff(grid) / np.sqrt(middle)), rel=0.05)
+
+
+@given(seeds)
+@settings(max_examples=50)
+def test_speeds_between_runs_are_the_highest_that_pulses_leave(seed):
+    """A linear programme in x'^2, where no pulse needs more thrust than the run's own limit."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 7))
+    lengths, top = 10.0 ** rng.uniform(-2, 1, count), rng.uniform(0.2, 3.0, count)
+    strength, velocity_jump = rng.uniform(0.1, 1.0), 10.0 ** rng.uniform(-2, 1)
+    base = rng.normal(size=3) + 0.4 * rng.normal(size=(count, 3))
+    jump = np.linalg.norm(np.diff(base, axis=0), axis=1)
+    turning = np.concatenate([[0.0], jump / strength, [0.0]])
+    steepest = 1.0 / np.maximum(turning[:-1], turning[1:])
+    push = np.minimum(strength / np.linalg.norm(base, axis=1), steepest)
+    corners = np.concatenate([[0.0], np.cumsum(lengths)])
+    each = np.arange(count)
+    runs = StraightRuns(corners, each, each, base, np.zeros((count, 3)), np.zeros((count, 0)))
+    pulses = PulseLimits(velocity_jump, strength)
+    _, speeds, lasting = time_law(runs, (top, push, np.full(count, np.inf)), pulses)
+    rows, bounds = [], []
+    for k in range(count):
+        for sign in (-1.0, 1.0):
+            row = np.zeros(count + 1)
+            row[k] = turning[k] + sign / push[k]
+            row[k + 1] = turning[k + 1] - sign / push[k]
+            rows.append(row)
+            bounds.append(2.0 * lengths[k])
+    most = np.zeros(count + 1)
+    most[1:-1] = np.minimum(velocity_jump / jump, np.minimum(top[:-1], top[1:])) ** 2
+    most[1:-1] = np.minimum(most[1:-1], np.minimum(lengths[:-1], lengths[1:]) / turning[1:-1])
+    best = linprog(
+        -np.ones(count + 1), rows, bounds, bounds=list(zip(0.0 * most, most, strict=True))
+    )
+    assert np.allclose(speeds**2, best.x, rtol=1e-6, atol=1e-9)
+    assert np.allclose(lasting[1:-1] * strength, speeds[1:-1] * jump)
 
 
 def test_a_straight_path_is_one_run_however_its_nodes_are_spaced(robot):
