@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 from numpy.typing import ArrayLike
 
 from ffsr_plan.collision.distances import SelfQuery
+from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted
 from ffsr_plan.core.text_files import write_text
@@ -59,9 +60,7 @@ class SelfCollisions(Sequence[SelfCollision]):
         Raises:
             InvalidInput: not a `.srdf` path, or one that cannot be written.
         """
-        if not isinstance(path, (str, Path)) or Path(path).suffix != ".srdf":
-            raise InvalidInput("path", path, "a path that ends in .srdf")
-        write_text("path", Path(path), self.srdf)
+        write_text("path", checked_path("path", path, ".srdf"), self.srdf)
 
     @overload
     def __getitem__(self, index: int) -> SelfCollision: ...

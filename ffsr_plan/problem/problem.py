@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.collision.contacts import contacts
 from ffsr_plan.core.arrays import Array, frozen
+from ffsr_plan.core.checks import finite_array
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import contact_list, counted, html_table
 from ffsr_plan.core.rotations import rotation_vector, to_angles
@@ -52,11 +53,11 @@ def _touching(robot: SpaceRobot, scene: Scene, what: str, value: object) -> str:
     Obstacles count at the start only: where the base is at the goal depends on the mode.
     """
     try:
-        q = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
+        q = np.array(finite_array(what, value, (robot.model.nq,)))  # type: ignore[arg-type]
+    except InvalidInput:
         return ""
-    size = float(np.linalg.norm(q[3:7])) if q.shape == (robot.model.nq,) else 0.0
-    if not (np.all(np.isfinite(q)) and size > 0.5):
+    size = float(np.linalg.norm(q[3:7]))
+    if size <= 0.5:
         return ""
     q[3:7] /= size
     found = contacts(robot, scene if what == "start" else Scene(), q)
