@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -93,15 +94,16 @@ def test_a_time_limit_leaves_the_next_call_alone(problem):
 def test_ctrl_c_during_the_refinement_keeps_the_plan(problem, monkeypatch):
     improve, rounds = refinement._Descent.improve, []
 
-    def pressed(descent, step):
-        rounds.append(step)
+    def pressed(descent, *arguments):
+        rounds.append(arguments)
         press()
-        return improve(descent, step)
+        return improve(descent, *arguments)
 
     monkeypatch.setattr(refinement._Descent, "improve", pressed)
-    plan = fp.plan(problem, fp.MaxMinAntSystem(cycles=20))
+    plan = fp.plan(replace(problem, delta=0.0), fp.MaxMinAntSystem(cycles=20))
     assert plan.interrupted
     assert len(rounds) == 1
+    assert plan.objective < plan.lattice_objective
     assert plan.verify(20).ok
 
 
