@@ -108,8 +108,8 @@ def refined_path(
         stop_requested: asked between rounds; whether to end with what has been reached.
     """
     problem = lattice.problem
-    if not problem.lattice.axes:
-        return None  # one node a layer: there is no offset to change
+    if not problem.lattice.axes or stop_requested():
+        return None  # with one node a layer there is no offset to change
     descent = _Descent(lattice, prover, offsets, clearances)
     before = descent.edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
     descent.value = before
