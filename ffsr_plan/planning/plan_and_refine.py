@@ -68,10 +68,7 @@ def plan(
         WorkerDied: a worker process ended without a result.
     """
     begin = time.perf_counter()
-    if not isinstance(problem, Problem):
-        raise InvalidInput("problem", problem, "a Problem (that of a scenario is scenario.problem)")
-    chosen = planner_of(planner, problem)
-    chosen.refuse(problem)
+    chosen = _planner_for(problem, planner)
     rng, seed_number = _generator(seed)
     request = _request(chosen, refine, colonies, workers, time_limit, on_cycle)
     check_colonies(problem, request.colonies)
@@ -151,6 +148,15 @@ def _request(
         time_limit=seconds,
         on_cycle=on_cycle,
     )
+
+
+def _planner_for(problem: Problem, planner: Planner | str | None) -> Planner:
+    """The planner, after a check that it can solve the problem."""
+    if not isinstance(problem, Problem):
+        raise InvalidInput("problem", problem, "a Problem (that of a scenario is scenario.problem)")
+    chosen = planner_of(planner, problem)
+    chosen.refuse(problem)
+    return chosen
 
 
 def _certified(
