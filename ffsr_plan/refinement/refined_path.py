@@ -22,8 +22,8 @@ import numpy as np
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
-from ffsr_plan.lattice.memory_estimate import MOST_EDGES_AT_ONCE
 from ffsr_plan.lattice.node_clearances import NodeClearances
+from ffsr_plan.problem.memory_estimate import MOST_EDGES_AT_ONCE
 from ffsr_plan.problem.objective import objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
