@@ -242,7 +242,7 @@ def test_huge_numbers_are_refused_before_they_reach_coal(robot):
 
 def test_a_lattice_too_large_for_memory_is_refused_with_its_size(robot):
     huge = fp.Lattice(40, fp.Axis(100_000, 1e-4))
-    with pytest.raises(fp.InvalidInput, match="layers 41 x nodes 200001 .*at most 2 GB"):
+    with pytest.raises(fp.InvalidInput, match=r"layers 41 x nodes 200001 .*at most 2 GB"):
         fp.plan(fp.Problem(**arguments(robot, lattice=huge)))
     with pytest.raises(fp.InvalidInput, match="at most 100000"):
         fp.AntSystem(ants=10**9)
