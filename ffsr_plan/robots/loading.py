@@ -168,8 +168,7 @@ def robot_from_urdf(
     shapes, replacements = collision_geometry(model, root, name, folders, containers, corners)
     check_bodies(root, name, model, shapes)
     compare(root, model, shapes, replacements)
-    links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
-    disabled = disabled_pairs(srdf, f"{name}, SRDF", links)
+    disabled = disabled_pairs(srdf, f"{name}, SRDF", link_names(root))
     _add_self_collision_pairs(model, shapes, root, disabled)
     return SpaceRobot(
         name,
@@ -203,6 +202,11 @@ def warn_of_shapeless_links(robot: SpaceRobot) -> None:
             f"{'links' if len(names) > 1 else 'link'} {listed}"
         )
         warnings.warn(message, UncheckedLinks, stacklevel=3)
+
+
+def link_names(robot: ElementTree.Element) -> list[str]:
+    """Names of the links of a `<robot>` element."""
+    return [str(link.get("name")) for link in robot.findall("link")]
 
 
 def _add_self_collision_pairs(
