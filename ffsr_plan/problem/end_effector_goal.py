@@ -70,8 +70,7 @@ def inverse_kinematics(
         attitude: (3,) wanted for the frame, ZYX angles [rad]; None if any is accepted.
         start: (nq,) configuration at the beginning of the motion.
         mode: what actuates the base; see `Problem`.
-        base_position: (3,) base origin at the end, where thrusters move it, world [m]; None for the
-            start's.
+        base_position: (3,) base origin at the end if thrusters move it [m]; None for the start's.
         base_attitude: (3,) base attitude at the end, where wheels hold it, ZYX angles [rad]; None
             for the start's.
         seed: of the random joint values, a whole number >= 0.
