@@ -30,6 +30,7 @@ from ffsr_plan.scene.scene import Scene
 
 POSE_TOLERANCE = 1e-8
 """Norm of the pose error [m and rad] below which a pose counts as met."""
+_ROUNDED = 1e-6  # [m, rad] by which a pose given in rounded numbers may be missed
 _DESCENTS = 16
 _COARSE, _FINE = (1e-2, 80), (1e-15, 200)
 # relative change of the squared error at which a descent ends, and its most evaluations
@@ -76,7 +77,7 @@ def inverse_kinematics(
         seed: of the random joint values, a whole number >= 0.
 
     Returns:
-        (nq,) configuration, base reaction included; the pose is met to 1e-8 m and rad.
+        (nq,) configuration, base reaction included; the pose is met to 1e-6 m and rad.
 
     Raises:
         InvalidInput: an argument that is not allowed.
@@ -179,7 +180,7 @@ def _solution(
     best = descent.run(best, _FINE)
     best = next(iter(descent.solutions(best)), best)
     rest, q = descent.error(best), descent.end(best)
-    if np.linalg.norm(rest) < POSE_TOLERANCE:
+    if np.linalg.norm(rest) < _ROUNDED:
         if collision is None and not collides(q):
             return frozen(q)
         raise collides.error(q if collision is None else collision)
