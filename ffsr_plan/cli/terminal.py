@@ -8,7 +8,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
-import click
 import typer
 from rich.console import Console
 
@@ -64,7 +63,7 @@ def errors_on_stderr() -> Iterator[None]:
         if isinstance(error, KeyboardInterrupt) or CtrlC.raised:
             err_console.print("ffsr-plan: interrupted", style="red")
             raise typer.Exit(INTERRUPTED) from None
-        if isinstance(error, (typer.Exit, click.ClickException, BrokenPipeError)):
+        if isinstance(error, (typer.Exit, typer.Abort, typer.BadParameter, BrokenPipeError)):
             raise  # for Typer
         err_console.print(f"ffsr-plan: {_unexpected(error)}", style="red")
         raise typer.Exit(INTERNAL_ERROR) from None
