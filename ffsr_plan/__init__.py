@@ -50,7 +50,7 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.single_edge_proof import EdgeProof, certify_edge
 from ffsr_plan.robots.collision_shapes import Replacement
-from ffsr_plan.robots.components import Components
+from ffsr_plan.robots.kinematics import Components
 from ffsr_plan.robots.loading import load_robot, robot_names
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.summary import RobotSummary, robot_summaries

@@ -3,7 +3,7 @@
     python -m tools.run_mutations [--sample N --seed S] [--file PATTERN] [--workers 2] [--list]
 
 Every mutation is applied in a copy of the repository, and its test is run there. Kernels that the
-mutation changes are compiled for it alone (`ffsr_plan.core.kernel_cache`).
+mutation changes are compiled for it alone (`ffsr_plan.core.kernels.kernel_cache`).
 """
 
 from __future__ import annotations

@@ -228,6 +228,7 @@ def view(
         from ffsr_plan.planning.certified_plan import Plan
 
         Plan.load(plan_file).show(port, block=True, open_browser=browser)
+        CtrlC.raised = False  # it ended the view, as it should
 
 
 @app.command()

@@ -91,15 +91,20 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
 def flight_rows(flight: TimedPlan) -> Iterator[tuple[str, str]]:
     """Names and values of a timed plan; peaks are over ten thousand instants."""
     robot = flight.motion.robot
-    states = flight.at(np.linspace(0.0, flight.duration, _PEAK_SAMPLES))
+    times = np.linspace(0.0, flight.duration, _PEAK_SAMPLES)
+    states = flight.at(times)
+    mass = sum(body.mass for body in list(robot.model.inertias)[1:])
+    thrust = states.thrust + mass * flight.pulse_accelerations(times)
     yield "duration", f"{flight.duration:.2f} s"
     yield "rests on the way", f"{len(flight.rests)}, at corners of the path"
     if len(flight.pulses):
         largest = np.max(np.linalg.norm(flight.pulses, axis=1))
-        yield "pulses", f"{len(flight.pulses)}, the largest {largest:.3g} m/s"
+        longest = np.max(flight.pulse_durations)
+        text = f"{len(flight.pulses)}, the largest {largest:.3g} m/s, the longest {longest:.3g} s"
+        yield "pulses", text
         yield "corner cut by them", f"at most {flight.corner_cut:.3g} m"
     yield "delta-v of the translation", f"{flight.delta_v:.4g} m/s"
-    yield "peak thrust", f"{np.max(np.linalg.norm(states.thrust, axis=1)):.3g} N"
+    yield "peak thrust", f"{np.max(np.linalg.norm(thrust, axis=1)):.3g} N"
     if flight.motion.mode.has_wheels:
         for name, values, unit in (
             ("torque", states.wheel_torque, "N m"),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
 from ffsr_plan.robots.shape_arrays import BOX
 from ffsr_plan.scene.sphere_tree import SphereTree
 

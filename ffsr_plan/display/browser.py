@@ -60,7 +60,7 @@ def serve(
     if opens:
         open_in_browser(server.url)
     if block:
-        print(f"{server.url} shows the plan until Ctrl-C")
+        print(f"{server.url} shows the plan until Ctrl-C", flush=True)
         server.wait()
     return server
 

@@ -1,1 +1,1 @@
-"""The layered lattice: nodes, edges, shortest paths over it and refinement beyond it."""
+"""The layered lattice: nodes, edges and shortest paths over it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ffsr_plan.core.arrays import Array, States
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
 
 

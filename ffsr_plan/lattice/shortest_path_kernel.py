@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
 
 

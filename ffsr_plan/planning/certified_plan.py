@@ -18,7 +18,7 @@ from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
 from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_csv
-from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits, refuse_limits_without_actuator
+from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
 from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
 
 if TYPE_CHECKING:
@@ -77,19 +77,11 @@ class Plan(PlanData):
         """
         limits = read_limits(
             self.problem.robot,
+            self.problem.mode,
             joint_velocity=joint_velocity,
             joint_acceleration=joint_acceleration,
             joint_jerk=joint_jerk,
             joint_torque=joint_torque,
-            base_velocity=base_velocity,
-            thruster_acceleration=thruster_acceleration,
-            thruster_jerk=thruster_jerk,
-            turn_velocity=turn_velocity,
-            turn_acceleration=turn_acceleration,
-            velocity_jump=velocity_jump,
-        )
-        refuse_limits_without_actuator(
-            self.problem.mode,
             base_velocity=base_velocity,
             thruster_acceleration=thruster_acceleration,
             thruster_jerk=thruster_jerk,

@@ -13,12 +13,12 @@ import numpy as np
 from ffsr_plan.core.checks import number, one_of, truth, whole_number
 from ffsr_plan.core.errors import AttitudeOutOfReach, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate
-from ffsr_plan.lattice.refinement import refined_path
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.plans.planner_registry import Planner, planner_of
 from ffsr_plan.problem.memory_estimate import check_colonies
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
 from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
 
@@ -49,8 +49,9 @@ def plan(
             with posture axes and `MaxMinAntSystem()` on any other.
         seed: a whole number >= 0, or a generator. The same seed gives the same plan, bit for bit,
             whatever the number of workers.
-        refine: whether to move the path off the lattice in the end, to where F is lower. By
-            default on every lattice without posture axes; with them paths are not refined.
+        refine: whether to move the path off the lattice in the end, to where F of the whole motion
+            is lower; see `refine`. By default on every lattice without posture axes; with them
+            paths are not refined.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
         time_limit: [s] for the search, from its beginning. The set-up of the lattice before it, the
@@ -90,10 +91,13 @@ def plan(
 
 
 def refine(plan: Plan) -> Plan:
-    """Move a plan's nodes off the lattice to where F is lower; certified like the plan itself.
+    """Move a plan to where F of the whole motion is lower; certified like the plan itself.
 
-    Offsets stay within the lattice's window, in steps of a sixteenth of its spacing. A plan whose
-    F does not fall, such as one on a lattice without offsets, is returned as it is.
+    F of the whole motion, `Plan.motion_objective`, contains the clearance between the nodes too. F
+    of Eq. 8, which contains the clearances at the nodes, may rise where the lattice path passes an
+    obstacle closely between two nodes. At delta = 0 both are the length. Offsets stay within the
+    lattice's window, in steps of a sixteenth of its spacing. A plan that cannot be improved, such
+    as one on a lattice without offsets, is returned as it is.
 
     Args:
         plan: a plan on a lattice without posture axes.

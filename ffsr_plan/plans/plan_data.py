@@ -17,7 +17,10 @@ from ffsr_plan.dynamics.wheel_momentum import WheelMomentum, wheel_momentum
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.plans.planner_registry import Planner
+from ffsr_plan.problem.objective import motion_objective
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.edge_clearances import EdgeClearances
 from ffsr_plan.search.records import History, Trails
 
 
@@ -34,7 +37,8 @@ class PlanData:
         nodes: offset indices along the path, 0 = no offset: (m + 1,), or (m + 1, axes) where the
             lattice has several axes (lateral, normal, postures in this order).
         length: L of Eq. 6 [m].
-        objective: F of Eq. 8 [length units].
+        objective: F of Eq. 8 [length units], which contains the clearances at the nodes;
+            `motion_objective` contains those between them too.
         lattice_objective: F of the path on the lattice, before refinement.
         optimum: F of the exact lattice optimum; with posture axes a lower bound on it.
         clearances: (m + 1,) least link-to-sphere distance at each node [m].
@@ -66,6 +70,22 @@ class PlanData:
     def configurations(self) -> Array:
         """(m + 1, nq) base poses in the world [m, quaternion xyzw] and joints at the nodes."""
         return frozen(self.motion.configurations())
+
+    @cached_property
+    def motion_objective(self) -> float:
+        """F of the whole motion [length units]: L + delta sum over all edges of 1 / d.
+
+        Here d is the least clearance sampled on the edge, whereas `objective` contains the
+        clearances at the nodes only. Refinement lowers this value. An edge is sampled at 2, 4, 8
+        and at most 16 equal steps, until no point can travel farther over a step than d.
+        """
+        problem, still = self.problem, np.zeros((self.motion.edges + 1, 3))
+        if problem.delta == 0.0:
+            return motion_objective(problem, self.length, np.full(self.motion.edges, np.inf))
+        prover = Prover(self.motion, problem.scene, problem.tolerance)
+        verdicts = EdgeClearances(problem, prover).of_path(still, self.clearances)
+        least = np.array([verdict.least_clearance for verdict in verdicts])
+        return motion_objective(problem, self.length, least)
 
     @property
     def gap(self) -> float:

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import finite_array
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.settings import UnknownKey
@@ -30,6 +31,7 @@ PLAIN = (
 )  # fmt: skip
 """Fields of a problem that a file holds as they are."""
 _AGREEMENT = 1e-9  # [m, rad] between the motion and the configurations beside it
+_LARGEST_STEP = 1000.0  # [rad or m] of a joint over an edge: the reaction to more takes too long
 
 T = TypeVar("T")
 
@@ -186,6 +188,7 @@ def _motion(what: str, table: PlanTable, problem: Problem) -> Motion:
         if values.shape != shape:
             raise InvalidInput(name, values.shape, f"the shape {shape}")
         values = finite_array(name, values, shape)
+        _check_joint_values(name, values, robot)
     positions = finite_array(f"{what}, motion.positions", table.motion.positions, (-1, 3))
     motion = _within(
         what,
@@ -199,6 +202,19 @@ def _motion(what: str, table: PlanTable, problem: Problem) -> Motion:
     if not apart <= _AGREEMENT:  # where the robot floats, they follow from the joints
         raise InvalidInput(f"{what}, motion.positions", "others", "those of its joint values")
     return motion
+
+
+def _check_joint_values(what: str, values: Array, robot: SpaceRobot) -> None:
+    """Raise `InvalidInput` for values outside the limits, and steps too long to follow."""
+    for k, name in enumerate(robot.joint_names):
+        lower, upper = robot.lower[k] - _AGREEMENT, robot.upper[k] + _AGREEMENT
+        outside = values[:, k][(values[:, k] < lower) | (values[:, k] > upper)]
+        if len(outside):
+            allowed = f"{robot.lower[k]:g} to {robot.upper[k]:g}"
+            raise InvalidInput(f"{what}, {name}", float(outside[0]), allowed)
+        step = float(np.max(np.abs(np.diff(values[:, k]))))
+        if step > _LARGEST_STEP:
+            raise InvalidInput(f"{what}, {name}", step, f"steps of at most {_LARGEST_STEP:g}")
 
 
 def _check_nodes(what: str, table: PlanTable, problem: Problem) -> None:

@@ -32,9 +32,12 @@ def plan_rows(plan: PlanData, duration: float | None = None) -> list[tuple[str, 
 def _objective_rows(plan: PlanData) -> list[tuple[str, str]]:
     bound = "optimum" if plan.optimum_is_exact else "lower bound"
     lattice = f"F {plan.lattice_objective:.4f}, {bound} {plan.optimum:.4f}, gap {plan.gap:.3%}"
+    value = f"{plan.objective:.4f}"
+    if plan.problem.delta > 0.0 and len(plan.problem.scene):
+        value += f", {plan.motion_objective:.4f} with the clearance between nodes"
     return [
         ("length L", f"{plan.length:.4f} m"),
-        ("objective F", f"{plan.objective:.4f}"),
+        ("objective F", value),
         ("on the lattice", lattice),
     ]
 

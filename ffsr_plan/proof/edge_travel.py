@@ -57,9 +57,11 @@ class EdgeTravel:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if end <= middle else (middle, high)
             travels, straight = self.over(low, high)
-        if base_step is None:
-            return _over_part(travels.in_base, layer, (low, high), (begin, end), np.zeros(3))
-        return _over_part(travels.world, layer, (low, high), (begin, end), base_step)
+        travel = travels.in_base if base_step is None else travels.world
+        step = np.zeros(3) if base_step is None else base_step
+        if end - begin == high - low:
+            return travel.bounds(layer, step)
+        return travel.within(layer, end - begin, 0.5 * (begin + end - low - high), step)
 
     def over(self, begin: float, end: float) -> tuple[ObserverTravels, Flags]:
         """The bounds over one interval of every edge, computed once.
@@ -97,17 +99,3 @@ def _largest_speed(whole: IntervalTravel) -> Array:
     from_middle = np.linalg.norm(whole.velocity, axis=-1) + 2.0 * whole.curvature
     largest: Array = np.max(np.minimum(from_middle, whole.speed), axis=1, initial=0.0)
     return largest
-
-
-def _over_part(
-    travel: IntervalTravel,
-    layer: int,
-    interval: tuple[float, float],
-    part: tuple[float, float],
-    base_step: Array,
-) -> Array:
-    """(g,) bounds [m] over `part` of an `interval` that has been computed."""
-    (low, high), (begin, end) = interval, part
-    if end - begin == high - low:
-        return travel.bounds(layer, base_step)
-    return travel.within(layer, end - begin, 0.5 * (begin + end - low - high), base_step)

@@ -29,7 +29,9 @@ class NominalPlacements:
         if time not in self._known:
             parts = _level_of(time)
             if parts is None:
-                self._known[time] = self._over(np.array([time]))
+                edges = np.arange(self._motion.edges)
+                q = self._motion.at(edges, np.full(len(edges), time))
+                self._known[time] = shape_placements(self._motion.robot, q)
             else:
                 self.between(parts)
         return self._known[time]
@@ -45,15 +47,11 @@ class NominalPlacements:
         """
         if parts not in self._levels:
             times, edges = odd_times(parts), self._motion.edges
-            self._levels[parts] = placed = self._over(times)
+            q = self._motion.at(np.tile(np.arange(edges), len(times)), np.repeat(times, edges))
+            self._levels[parts] = placed = shape_placements(self._motion.robot, q)
             each = placed.frames.reshape(len(times), edges, *placed.frames.shape[1:])
             self._known |= zip(times.tolist(), map(Placements, each), strict=True)
         return self._levels[parts]
-
-    def _over(self, times: Array) -> Placements:
-        edges = self._motion.edges
-        q = self._motion.at(np.tile(np.arange(edges), len(times)), np.repeat(times, edges))
-        return shape_placements(self._motion.robot, q)
 
 
 class ObstacleEdge:

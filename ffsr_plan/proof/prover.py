@@ -94,10 +94,7 @@ class Prover:
     def sampled_edges(
         self, layers: IntArray, tails: Array, heads: Array, ends: Array
     ) -> list[Verdict]:
-        """Prove many edges free of obstacles, or refuse them, and sample their clearances.
-
-        An edge is sampled (`sample_edges`) until it is proven free. One that comes closer to an
-        obstacle than the finest step is left to interval halving.
+        """Sample the clearances on many edges until they are proven free; see `sample_edges`.
 
         Args:
             layers: (k,) the edges.
@@ -106,7 +103,7 @@ class Prover:
             ends: (k, 2) clearances at their starts and ends [m].
 
         Returns:
-            k verdicts with the least clearance computed.
+            k verdicts: whether the edge is proven free, and the least clearance sampled.
         """
         speeds = np.linalg.norm(self._steps[layers] + heads - tails, axis=1) + self.speeds[layers]
 
@@ -118,14 +115,7 @@ class Prover:
             found = self._obstacles.distances_at(placed, rows.ravel(), offsets.reshape(-1, 3))
             return found.reshape(rows.shape)
 
-        verdicts = sample_edges(measure, ends, speeds, self.rounding, self.tolerance)
-        for k, verdict in enumerate(verdicts):
-            if not verdict.free and verdict.least_clearance > self.tolerance:
-                pair = (float(ends[k, 0]), float(ends[k, 1]))
-                proof = self.certify(int(layers[k]), tails[k], heads[k], pair)
-                least = min(proof[1:3], verdict[1:3])
-                verdicts[k] = Verdict(proof.free, *least, proof.queries + verdict.queries)
-        return verdicts
+        return sample_edges(measure, ends, speeds, self.rounding, self.tolerance)
 
     def base_step(self, layer: int, tail: Array, head: Array) -> Array:
         """Displacement of the base origin over an edge.

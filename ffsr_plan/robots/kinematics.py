@@ -14,12 +14,12 @@ Apart from R, these are sums over the links between the base and the link: one m
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 
-from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.arrays import Array, Flags, IntArray, equal_by_content
 from ffsr_plan.core.errors import unknown_name
 from ffsr_plan.core.rotations import cross
 
@@ -151,6 +151,21 @@ def _motion_subspaces(model: pin.Model) -> list[Array]:
         joint.calc(data, neutral)
         subspaces.append(np.array(data.S, dtype=np.float64).ravel())
     return subspaces
+
+
+@equal_by_content
+class Components(NamedTuple):
+    """Parts of one configuration, or of N.
+
+    Attributes:
+        position: (3,) or (N, 3) base origin in the world [m].
+        attitude: (3,) or (N, 3) ZYX angles alpha, beta, gamma of Eq. 2 [rad].
+        joints: joint values by name [rad, or m where prismatic]: a float each, or (N,).
+    """
+
+    position: Array
+    attitude: Array
+    joints: dict[str, Any]
 
 
 def frame_index(model: pin.Model, frame: object) -> int:

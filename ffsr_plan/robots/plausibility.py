@@ -34,7 +34,8 @@ class Body(NamedTuple):
         mass: of all of them [kg].
         gyration: largest radius of gyration about the centre of mass [m].
         size: largest distance from the centre of mass to a known point: a corner of a shape, an
-            origin of a link or of a joint; infinite if the extent of a link is not known [m].
+            origin of a link or of a joint [m].
+        whole: whether the extents of all links with an inertia are known.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Body(NamedTuple):
     mass: float
     gyration: float
     size: float
+    whole: bool
 
 
 def check_bodies(
@@ -72,7 +74,7 @@ def check_bodies(
             allowed += f", at least {LIGHTEST:g} kg" if mass > 0.0 else ""
             raise InvalidInput(f"{where}, link '{frame.name}'", f"{mass:g} kg", allowed)
     found = bodies(robot, collision)
-    reach = float(np.sum([body.size for body in found if np.isfinite(body.size)]))
+    reach = float(sum(body.size for body in found))
     _check_gyration(found, where, reach)
     moved = sum(body.mass for body in found[1:])
     if any(joint.get("type") == "prismatic" for joint in robot.findall("joint")):
@@ -88,10 +90,10 @@ def check_bodies(
 
 def _check_gyration(found: Sequence[Body], where: str, reach: float) -> None:
     for body in found:
-        most = max(_MOST_GYRATION * body.size, reach) if np.isfinite(body.size) else LARGEST
+        most = max(_MOST_GYRATION * body.size, reach) if body.whole else LARGEST
         if body.gyration > most:
             allowed = (
-                f"at most {most:.3g} m for a body of {min(body.size, LARGEST):.3g} m; are the "
+                f"at most {most:.3g} m for a body of {body.size:.3g} m; are the "
                 "units right, kg m^2 and kg?"
             )
             value = f"radius of gyration {body.gyration:.3g} m"
@@ -133,7 +135,7 @@ def _body(links: list[Placed], points: Array) -> Body:
     )
     name = str(links[0].link.get("name"))
     gyration = float(np.sqrt(moment / mass)) if mass > 0.0 else 0.0
-    return Body(name, links, mass, gyration, np.inf if unknown else size)
+    return Body(name, links, mass, gyration, size, not unknown)
 
 
 def _visual_corners(own: Placed) -> Array:

@@ -22,8 +22,7 @@ from ffsr_plan.robots.collision_shapes import (
     Containers,
     Replacement,
 )
-from ffsr_plan.robots.components import Components
-from ffsr_plan.robots.kinematics import Tree
+from ffsr_plan.robots.kinematics import Components, Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import named_postures
 from ffsr_plan.robots.urdf.inertias import Balanced

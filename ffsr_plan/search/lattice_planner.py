@@ -11,10 +11,10 @@ from ffsr_plan.core.arrays import frozen
 from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
 from ffsr_plan.lattice.certificate import Certificate, Counts
 from ffsr_plan.lattice.optimum import lattice_optimum
-from ffsr_plan.lattice.refinement import refined_path
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.problem.memory_estimate import check_lattice
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult, Solution
 from ffsr_plan.search.workers import run_on_workers
 

@@ -141,30 +141,34 @@ class LimitSettings:
         )
 
 
-def read_limits(robot: SpaceRobot, **given: Any) -> FlightLimits:  # noqa: ANN401 - see `LimitSettings`
+def read_limits(
+    robot: SpaceRobot,
+    mode: Mode | None = None,
+    **given: Any,  # noqa: ANN401 - see `LimitSettings`
+) -> FlightLimits:
     """The limits that a user names, checked; see `LimitSettings` and `Plan.timed`.
 
     Args:
         robot: the robot.
+        mode: what actuates the base; None for any.
         **given: fields of `LimitSettings`.
 
     Raises:
-        InvalidInput: a limit that is not allowed, or a joint that the robot does not have.
+        InvalidInput: a limit that is not allowed, of wheels or thrusters that the mode does not
+            have, or of a joint that the robot does not have.
     """
-    return LimitSettings(**given).for_robot(robot)
+    limits = LimitSettings(**given).for_robot(robot)
+    if mode is not None:
+        _refuse_limits_without_actuator(mode, given)
+    return limits
 
 
-def refuse_limits_without_actuator(mode: Mode, **given: float | None) -> None:
-    """Raise `InvalidInput` for a limit of wheels or thrusters that a mode does not have.
-
-    Args:
-        mode: what actuates the base.
-        **given: limits by name; None and 0 where none is given.
-    """
+def _refuse_limits_without_actuator(mode: Mode, given: dict[str, Any]) -> None:
+    """Raise `InvalidInput` for a limit of wheels or thrusters that a mode does not have."""
     lacking = dict.fromkeys(_OF_THRUSTERS, "thrusters") if mode.floats else {}
     lacking |= {} if mode.has_wheels else dict.fromkeys(_OF_WHEELS, "wheels")
     for name, actuator in lacking.items():
-        if given[name]:
+        if given.get(name):
             allowed = f"none in the mode {mode}: it has no {actuator}"
             raise InvalidInput(name, given[name], allowed)
 

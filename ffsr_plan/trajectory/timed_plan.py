@@ -110,6 +110,21 @@ class TimedPlan:
             raise InvalidInput("times", times, allowed)
         return _states(self.motion, self._runs, self._law, self._law.piece(instants), instants)
 
+    def pulse_accelerations(self, times: ArrayLike) -> Array:
+        """Acceleration of the base by pulses, to be added to that of `at`; zero between pulses.
+
+        Args:
+            times: (N,) times [s].
+
+        Returns:
+            (N, 3) accelerations, world axes [m/s^2]; times the robot's mass, thrust.
+
+        Raises:
+            InvalidInput: times that are not finite numbers.
+        """
+        instants = finite_array("times", times, (-1,))
+        return _Pulses(self.pulse_times, self.pulse_durations, self.pulses).accelerations(instants)
+
     def clock(self, rate: float) -> Array:
         """Equally spaced times 0, 1 / rate, 2 / rate, ..., and the end.
 
@@ -172,7 +187,8 @@ def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:
         lasting[1:-1][passed],
         runs.jumps()[passed] * speeds[1:-1][passed, None] if len(passed) else np.zeros((0, 3)),
     )
-    push, excess = _efforts(motion, runs, law, limits, pulses.accelerations(law))
+    pushes = pulses.accelerations((law.times[1:] + law.times[:-1]) / 2.0)
+    push, excess = _efforts(motion, runs, law, limits, pushes)
     worst = np.ones(leg[-1] + 1)
     np.maximum.at(worst, leg[law.run], excess)
     factors = np.sqrt(worst)[leg]
@@ -206,10 +222,9 @@ class _Pulses(NamedTuple):
     durations: Array
     jumps: Array
 
-    def accelerations(self, law: TimeLaw) -> Array:
-        """(K, 3) acceleration of the base by pulses on each piece of a law, world axes [m/s^2]."""
-        middles = (law.times[1:] + law.times[:-1]) / 2.0
-        during = np.abs(middles[:, None] - self.times) < self.durations / 2.0
+    def accelerations(self, times: Array) -> Array:
+        """(N, 3) acceleration of the base by pulses at times (N,) [s], world axes [m/s^2]."""
+        during = np.abs(times[:, None] - self.times) < self.durations / 2.0
         return during @ (self.jumps / self.durations[:, None])
 
     def corner_cut(self) -> float:

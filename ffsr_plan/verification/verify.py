@@ -114,6 +114,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     drift = swept.drift if problem.mode.floats else None
     with np.errstate(over="ignore", invalid="ignore"):  # absurd weights give infinite lengths
         costs, path = recompute(plan, bodies, swept.nodes), LatticePath(plan)
+        contradictions = path.problems(bodies, swept.nodes) if swept.finite else []
     problems = (
         *_bad_input(plan, bodies),
         *_collisions(plan, swept),
@@ -121,7 +122,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         *_broken_momentum(residual, wheel_error, drift),
         *_ends_and_limits(plan),
         *_other_costs(plan, costs),
-        *(path.problems(bodies, swept.nodes) if swept.finite else ()),
+        *contradictions,
     )
     least = swept.clearance.value if swept.clearance else np.inf
     gap = swept.separation.value if swept.separation else np.inf

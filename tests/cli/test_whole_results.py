@@ -16,19 +16,19 @@ from tests.cli.test_commands import QUICK
 
 MOMENTS = 20
 ENDLESS = '[planner]\nname = "ant-system"\nants = 3000\ncycles = 100000\nrho = 0.999999\n'
-LIMIT = ("--time-limit", "30")
+OPTIONS = ("--out", "results", "--force", "--time-limit", "30")
 COMMAND = (
     "import sys, ffsr_plan_command as command\n"
     "print('begun', flush=True)\n"
-    "sys.argv = ['ffsr-plan', 'plan', *sys.argv[1:]]\n"
+    "sys.argv[0] = 'ffsr-plan'\n"
     "command.main()\n"
 )
 
 
 def begun(folder, *arguments):
-    """A process that has begun to load the command."""
+    """A process that has begun to load the command line."""
     process = subprocess.Popen(
-        [sys.executable, "-c", COMMAND, *arguments, "--out", "results", "--force", *LIMIT],
+        [sys.executable, "-c", COMMAND, *arguments],
         cwd=folder,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -54,7 +54,7 @@ def folders(tmp_path_factory):
         (folder / "new.toml").write_text(QUICK.replace('"quick"', '"new"'))
         (folder / "endless.toml").write_text(QUICK.replace('"quick"', '"new"') + ENDLESS)
         begin = time.monotonic()
-        assert ended(begun(folder, "old.toml")) == 0
+        assert ended(begun(folder, "plan", "old.toml", *OPTIONS)) == 0
         seconds = time.monotonic() - begin
         made.append(folder)
     return made, seconds
@@ -76,7 +76,7 @@ def stopped(folder, number, scenario, moment):
     """Status, plan and title after a signal at a moment; the old results are put back."""
     results = folder / "results"
     before = {name: (results / name).read_bytes() for name in RESULTS}
-    process = begun(folder, scenario, "--seed", "5")
+    process = begun(folder, "plan", scenario, "--seed", "5", *OPTIONS)
     time.sleep(moment)
     process.send_signal(number)
     status = ended(process)
@@ -116,6 +116,14 @@ def test_a_kill_leaves_whole_files(folders):
     met = at_all_moments(folders, signal.SIGKILL, "new.toml", MOMENTS, 2)
     assert {status for status, _, _ in met} <= {0, -signal.SIGKILL}
     assert {plan.seed for _, plan, _ in met} <= {0, 5}
+
+
+def test_ctrl_c_ends_a_view_as_it_should(tmp_path):
+    fp.plan(fp.load_scenario("fig2b"), fp.AntSystem(cycles=2)).save(tmp_path / "plan.json")
+    process = begun(tmp_path, "view", "plan.json", "--no-browser")
+    assert "until Ctrl-C" in process.stdout.readline()
+    process.send_signal(signal.SIGINT)
+    assert ended(process) == 0
 
 
 def test_results_that_cannot_be_written_keep_the_plan_and_the_old_results(tmp_path, monkeypatch):

@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 
-from ffsr_plan.core.compilation import inlined_kernel, kernel, notify_after
+from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel, notify_after
 
 
 @inlined_kernel

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from ffsr_plan.core.kernel_cache import digest
+from ffsr_plan.core.kernels.kernel_cache import digest
 
 TEXTS = {
     "low": "K = 1\n",
@@ -42,7 +42,7 @@ def test_a_change_makes_all_kernels_above_it_stale(tmp_path, changed, stale):
 
 
 KERNEL = """
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 @kernel
 def doubled(x):
     return 2.0 * x

@@ -36,6 +36,8 @@ def test_a_package_is_found_upwards_by_its_folder(workspace):
 def test_a_package_is_found_by_the_name_in_its_manifest(workspace):
     assert below(workspace, "package://renamed/c d.stl", "checkout-3") == "checkout-3/c d.stl"
     assert below(workspace, "package://renamed/c%20d.stl", "checkout-3") == "checkout-3/c d.stl"
+    deeper = "checkout-3/urdf/arms"
+    assert below(workspace, "package://renamed/c d.stl", deeper) == "checkout-3/c d.stl"
     (workspace / "checkout-3/package.xml").write_text("<package>")
     assert below(workspace, "package://renamed/c d.stl", "checkout-3") is None
 

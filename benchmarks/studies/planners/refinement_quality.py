@@ -16,8 +16,8 @@ import numpy as np
 
 import ffsr_plan as fp
 from benchmarks.random_scenes import LATTICE, RESULTS, publish, random_problem, table
-from ffsr_plan.lattice.refinement import refined
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.refined_path import refined
 
 FIRST_SEED = 3000
 DELTAS = (0.0, 0.1, 2.0, 6.0)

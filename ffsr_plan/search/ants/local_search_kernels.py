@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 
 _LEAST_GAIN = 1e-12  # relative improvement that counts
 

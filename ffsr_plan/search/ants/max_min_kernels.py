@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.lattice.edge_states import FREE
 from ffsr_plan.search.ants.local_search_kernels import improve, path_cost
 

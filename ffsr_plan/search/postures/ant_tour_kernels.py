@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.search.postures.cost_kernels import (
     PostureGrid,
     clearance_at,

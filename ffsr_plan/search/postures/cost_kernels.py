@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ffsr_plan.collision.nearest_sphere_kernels import STACK_SIZE, nearest_sphere
 from ffsr_plan.core.arrays import Array, Flags, IntArray
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 
 COLLISION_COST = 3.0  # [m] of cost for a collision
 DEPTH_COST = 15.0  # [m] of cost for each metre of its depth

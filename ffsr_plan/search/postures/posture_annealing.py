@@ -11,7 +11,7 @@ from ffsr_plan.core.arrays import IntArray, frozen
 from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.settings import settings
-from ffsr_plan.lattice.certificate import Certificate, Counts
+from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
 from ffsr_plan.search.postures.colony import PostureColony, PosturePath
@@ -168,9 +168,11 @@ class _Proofs:
             assert self._last is not None
             raise unproven(problem, self._last.refused[0], result.interrupted)
         path, proof, on_lattice = self._best
-        m = len(path) - 1
-        counts = Counts(m, self._refused, m + 1, self._queries - m - 1)
-        solution = _solution(self._lattice, path, proof, counts, result, on_lattice)
+        m, before = len(path) - 1, proof.prover.queries
+        least = proof.prover.least_clearance(np.zeros((m + 1, 3)), proof.clearances)
+        queries = self._queries + proof.prover.queries - before
+        certificate = Certificate(m, self._refused, m + 1, queries - m - 1, least)
+        solution = _solution(self._lattice, path, proof, certificate, result, on_lattice)
         if not proof.holds:
             wanted = float(angle_between(problem.start[3:7], problem.goal[3:7]))
             raise AttitudeOutOfReach(wanted, proof.attitude_error, solution)
@@ -181,17 +183,12 @@ def _solution(
     lattice: PostureLattice,
     path: IntArray,
     proof: PathProof,
-    counts: Counts,
+    certificate: Certificate,
     result: PosturePath,
     lattice_objective: float,
 ) -> Solution:
-    """The solution along a proven path; `counts` so far, without the least clearance."""
-    problem, before = lattice.problem, proof.prover.queries
-    still = np.zeros((len(path), 3))
-    least = proof.prover.least_clearance(still, proof.clearances)
-    queries = counts.edge_queries + proof.prover.queries - before
+    """The solution along a proven path."""
     nodes = np.hstack([lattice.base.indices[path[:, 0]], lattice.indices[path[:, 1]]])
-    counts = counts._replace(edge_queries=queries)
     return Solution(
         lattice=lattice.base,
         motion=proof.motion,
@@ -201,9 +198,9 @@ def _solution(
         lattice_objective=lattice_objective,
         optimum=min(lower_bound(lattice), lattice_objective),
         clearances=frozen(proof.clearances),
-        history=_in_units(result.history, problem.length_unit),
+        history=_in_units(result.history, lattice.problem.length_unit),
         trails=result.trails,
-        certificate=Certificate(*counts, least),
+        certificate=certificate,
         interrupted=result.interrupted,
     )
 

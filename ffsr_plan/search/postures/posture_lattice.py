@@ -17,8 +17,8 @@ from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
-from ffsr_plan.core.compilation import notify_after
 from ffsr_plan.core.cost_estimate import check_memory, check_work
+from ffsr_plan.core.kernels.compilation import notify_after
 from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction

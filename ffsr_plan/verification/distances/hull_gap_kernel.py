@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 
 _ROUNDS = 200
 _PRECISION = 1e-13  # of the distance, relative, and in metres

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.compilation import kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.verification.distances.hull_gap_kernel import hull_gap
 from ffsr_plan.verification.distances.solid_arrays import SolidArrays
 
@@ -43,8 +43,7 @@ def sphere_distances(
         (q,) signed distances [m]; infinite for an empty list.
     """
     result = np.full(len(asked), np.inf)
-    local, eye = np.empty((1, 3)), np.eye(3)
-    still, between = np.zeros(3), np.empty(3)
+    local, between = np.empty((1, 3)), np.empty(3)
     for q in range(len(asked)):
         n, s = asked[q]
         begin, end = ranges[q]
@@ -65,12 +64,7 @@ def sphere_distances(
                 if bound >= result[q] and k != nearest:
                     continue
                 taken = solids.swells[s] + radii[sphere]
-                if solids.halves[s, 0] >= 0.0:
-                    distance = _from_box(local[0], solids.halves[s])
-                elif len(corners) <= 2:
-                    distance = _from_segment(local[0], corners[0], corners[-1])
-                else:
-                    distance = hull_gap(corners, local, eye, still, result[q] + taken)
+                distance = _from_solid(local, corners, solids.halves[s], result[q] + taken)
                 result[q] = min(result[q], distance - taken)
             if first == 0 and nearest >= 0:  # bring it to the front
                 near[begin], near[nearest] = near[nearest], near[begin]
@@ -180,6 +174,16 @@ def _into_solid(point: Array, base: Array, turn: Array, place: Array, local: Arr
 @kernel
 def _apart(a: Array, b: Array) -> float:
     return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
+
+
+@kernel
+def _from_solid(local: Array, corners: Array, half: Array, enough: float) -> float:
+    """Signed distance of a point (1, 3) from a solid without its swell, or at least `enough`."""
+    if half[0] >= 0.0:
+        return _from_box(local[0], half)
+    if len(corners) <= 2:
+        return _from_segment(local[0], corners[0], corners[-1])
+    return hull_gap(corners, local, np.eye(3), np.zeros(3), enough)
 
 
 @kernel

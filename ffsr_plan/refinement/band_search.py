@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, States
-from ffsr_plan.lattice.edge_clearances import EdgeClearances
 from ffsr_plan.lattice.edge_states import REFUSED
-from ffsr_plan.lattice.offset_band import OffsetBand
 from ffsr_plan.lattice.roadmap import rule_out
 from ffsr_plan.lattice.shortest_path import LazyShortestPath
 from ffsr_plan.problem.objective import nearness
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.refinement.edge_clearances import EdgeClearances
+from ffsr_plan.refinement.offset_band import OffsetBand
 
 NO_GAIN = 1.0 - 1e-12
 """Relative: a smaller gain of F counts as none."""
@@ -64,10 +65,12 @@ class BandSearch:
         """
         search = LazyShortestPath(self._costs, np.zeros(self._clearances.shape), self._status, 0)
         path, best, least = search.path(), None, self._most
+        layers = np.arange(len(self._clearances))
         for _ in range(candidates):
             if path is None or not self._cost(path) < least:
                 break
-            worse = self._evaluate(path)
+            offsets, clearances = self._band.offsets[layers, path], self._clearances[layers, path]
+            worse = self._learn(path, self._edges.of_path(offsets, clearances))
             if self._cost(path) < least:
                 best, least = path, self._cost(path)
             if worse is None:
@@ -80,16 +83,14 @@ class BandSearch:
         steps = np.arange(len(self._costs))
         return float(np.sum(self._costs[steps, path[:-1], path[1:]]))
 
-    def _evaluate(self, path: IntArray) -> int | None:
+    def _learn(self, path: IntArray, verdicts: list[Verdict]) -> int | None:
         """Raise the costs along a path to the true ones; the first layer with a higher one."""
-        layers, tails, heads = np.arange(len(path)), path[:-1], path[1:]
-        offsets, steps = self._band.offsets, layers[:-1]
-        verdicts = self._edges.of_path(offsets[layers, path], self._clearances[layers, path])
+        steps, tails, heads = np.arange(len(verdicts)), path[:-1], path[1:]
         least = np.array([v.least_clearance if v.free else 0.0 for v in verdicts])
         costs = self._band.lengths[steps, tails, heads] + nearness(self._problem, least)
         worse = np.flatnonzero(costs > self._costs[steps, tails, heads])
         self._costs[worse, tails[worse], heads[worse]] = costs[worse]
         for i in np.flatnonzero(least == 0.0).tolist():
-            edge = (int(tails[i]), int(heads[i]))
-            rule_out(self._status[i], offsets[i], offsets[i + 1], edge, verdicts[i])
+            ends, edge = self._band.offsets[i : i + 2], (int(tails[i]), int(heads[i]))
+            rule_out(self._status[i], ends[0], ends[1], edge, verdicts[i])
         return int(worse[0]) if len(worse) else None

@@ -9,7 +9,7 @@ from functools import cache, cached_property, update_wrapper
 from threading import Timer
 from typing import Any, Literal, TypeVar, cast
 
-from ffsr_plan.core.kernel_cache import keep_on_disk
+from ffsr_plan.core.kernels.kernel_cache import keep_on_disk
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 _NOTICE = "compiling numerical kernels, once after an installation (some ten seconds in all)"

@@ -19,25 +19,48 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
-from ffsr_plan.lattice.band_search import NO_GAIN, BandSearch
 from ffsr_plan.lattice.certificate import Counts
-from ffsr_plan.lattice.edge_clearances import EdgeClearances
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
-from ffsr_plan.lattice.offset_band import OffsetBand
 from ffsr_plan.problem.objective import objective, path_length
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.band_search import NO_GAIN, BandSearch
+from ffsr_plan.refinement.edge_clearances import EdgeClearances
+from ffsr_plan.refinement.offset_band import OffsetBand
 
-_LEVELS = 4
-_FINEST = 2**_LEVELS
+_FINEST = 16
+_STEPS = (8, 4, 2, 1)  # of the levels, in sixteenths of the spacing
 _ROUNDS = 8
-_CANDIDATES = 10  # paths evaluated in a round, where delta > 0
 _EXHAUSTIVE = 10**6
-_WORTH_A_ROUND = 1e-4  # relative gain after which another round is made, where delta > 0
-# offsets to either side of the path, by number of axes
-_REACH_OF_SHORTEST = (2, 2)  # at delta = 0
-_REACH = (2, 1)  # where delta > 0
-_REACH_ON_LATTICE = (40, 2)  # in the first round
+
+
+class _Level(NamedTuple):
+    """How the offsets of a level are chosen and searched.
+
+    Attributes:
+        step: distance between two offsets, in sixteenths of the spacing.
+        reach: offsets to either side of the path, along each axis.
+        candidates: number of paths to evaluate in a round at most.
+        rounds: number of rounds at most.
+        gain: relative gain that another round needs.
+    """
+
+    step: int
+    reach: int
+    candidates: int
+    rounds: int
+    gain: float
+
+
+def _levels(delta: float, axes: int) -> list[_Level]:
+    """The levels: where delta > 0, first the lattice itself, and then fewer paths and rounds."""
+    if delta == 0.0:
+        return [_Level(step, 2, _EXHAUSTIVE, _ROUNDS, 0.0) for step in _STEPS]
+    reach_on_lattice, reach = (40, 2) if axes == 1 else (2, 1)
+    return [
+        _Level(_FINEST, reach_on_lattice, _EXHAUSTIVE, 1, 0.0),
+        *(_Level(step, reach, 10, _ROUNDS, 1e-4) for step in _STEPS),
+    ]
 
 
 class RefinedPath(NamedTuple):
@@ -83,16 +106,17 @@ def refined_path(
         return None  # one node a layer: there is no offset to change
     descent = _Descent(lattice, prover, offsets, clearances)
     before = descent.value
-    axes = len(problem.lattice.axes) - 1
-    reach, candidates = _REACH_OF_SHORTEST[axes], _EXHAUSTIVE
-    if problem.delta > 0.0:
-        if nodes is not None:
-            descent.learn(nodes.known, nodes.bounds, lattice.indices)
-        descent.improve_on_lattice(_REACH_ON_LATTICE[axes])
-        reach, candidates = _REACH[axes], _CANDIDATES
-    for level in range(1, _LEVELS + 1):
-        for _ in range(_ROUNDS):
-            if stop_requested() or not descent.improve(_FINEST // 2**level, reach, candidates):
+    if problem.delta > 0.0 and nodes is not None:
+        descent.learn(nodes.known, nodes.bounds, lattice.indices)
+    for level in _levels(problem.delta, len(problem.lattice.axes)):
+        for _ in range(level.rounds):
+            if stop_requested():
+                break
+            band = descent.band(level)
+            measured = descent.measured(band)
+            search = BandSearch(problem, descent.edges, band, measured, descent.value)
+            path = search.best_path(level.candidates)
+            if path is None or not descent.take(band, measured, path, level):
                 break
     if not descent.value < before:
         return None
@@ -122,14 +146,14 @@ class _Descent:
         sizes = np.sum(self.unit**2, axis=1)
         self.coordinates: IntArray = np.rint(offsets @ self.unit.T / sizes).astype(np.int64)
         self._known: dict[int, float] = {}
-        self._edges = EdgeClearances(lattice.problem, prover)
+        self.edges = EdgeClearances(lattice.problem, prover)
         self._queries_before, self._node_queries = prover.queries, 0
         self.clearances = np.array(clearances)
-        self.value = self._edges.motion_objective(self.coordinates @ self.unit, self.clearances)
+        self.value = self.edges.motion_objective(self.coordinates @ self.unit, self.clearances)
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""
-        return self._edges.counts(self._node_queries, self._prover.queries - self._queries_before)
+        return self.edges.counts(self._node_queries, self._prover.queries - self._queries_before)
 
     def learn(self, known: Flags, clearances: Array, indices: IntArray) -> None:
         """Take over clearances of lattice nodes, so that they are not measured again.
@@ -143,45 +167,36 @@ class _Descent:
         names = self._names(layers, indices[nodes] * _FINEST)
         self._known |= zip(names, clearances[layers, nodes].tolist(), strict=True)
 
-    def improve_on_lattice(self, most: int) -> None:
-        """Take the best path over the offsets of the lattice.
+    def band(self, level: _Level) -> OffsetBand:
+        """The offsets around the path; on the lattice itself, moved into the window."""
+        reach = np.full(len(self._rim), level.reach)
+        middle = self.coordinates
+        if level.step == _FINEST:
+            reach = np.minimum(reach, self._rim // _FINEST)
+            inner = self._rim - reach * _FINEST
+            middle = np.clip(middle, -inner, inner)
+        return OffsetBand(self._problem, middle, self._rim, self.unit, level.step, reach)
+
+    def take(self, band: OffsetBand, measured: Array, path: IntArray, level: _Level) -> bool:
+        """Move to a path over a band if it is better; whether another round may help.
 
         Args:
-            most: offsets to either side of the path; at the rim, farther on one side.
+            band: the band.
+            measured: (m + 1, w) clearances of its nodes [m].
+            path: (m + 1,) nodes.
+            level: the level.
         """
-        reach = np.minimum(most, self._rim // _FINEST)
-        inner = self._rim - reach * _FINEST
-        self._take_best(np.clip(self.coordinates, -inner, inner), _FINEST, reach, _EXHAUSTIVE)
-
-    def improve(self, step: int, reach: int, candidates: int) -> bool:
-        """Take the best of the offsets around the path; whether another round may help.
-
-        Args:
-            step: distance between two offsets, in sixteenths of the spacing.
-            reach: offsets to either side of the path.
-            candidates: number of paths to evaluate at most.
-        """
-        before, value = self.coordinates, self.value
-        self._take_best(before, step, np.full(len(self._rim), reach), candidates)
-        if self._problem.delta > 0.0 and self.value > value * (1.0 - _WORTH_A_ROUND):
-            return False
-        return bool(np.any(np.abs(self.coordinates - before) == reach * step))
-
-    def _take_best(self, middle: IntArray, step: int, reach: IntArray, candidates: int) -> None:
-        """Take the best path over the offsets around `middle` (m + 1, axes) if it is better."""
-        band = OffsetBand(self._problem, middle, self._rim, self.unit, step, reach)
-        clearances = self._measured(band)
-        search = BandSearch(self._problem, self._edges, band, clearances, self.value)
-        path = search.best_path(candidates)
-        if path is None:
-            return
         layers = np.arange(len(path))
-        coordinates, ends = band.choices[layers, path], clearances[layers, path]
-        value = self._edges.motion_objective(coordinates @ self.unit, ends)
-        if value < self.value * NO_GAIN:
-            self.coordinates, self.clearances, self.value = coordinates, ends, value
+        coordinates, clearances = band.choices[layers, path], measured[layers, path]
+        value = self.edges.motion_objective(coordinates @ self.unit, clearances)
+        if not value < self.value * NO_GAIN:
+            return False
+        gained = value <= self.value * (1.0 - level.gain)
+        moved = np.abs(coordinates - self.coordinates)
+        self.coordinates, self.clearances, self.value = coordinates, clearances, value
+        return gained and bool(np.any(moved == level.reach * level.step))
 
-    def _measured(self, band: OffsetBand) -> Array:
+    def measured(self, band: OffsetBand) -> Array:
         """(m + 1, w) clearances, -inf where an offset is not allowed; each measured once."""
         layers, nodes = np.nonzero(band.present)
         names = self._names(layers, band.choices[layers, nodes])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.lattice.certificate import Counts
-from ffsr_plan.lattice.offset_band import OffsetBand
 from ffsr_plan.problem.objective import motion_objective, path_length
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.proof.interval_halving import Verdict, certify
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.offset_band import OffsetBand
 
 
 class EdgeClearances:
@@ -31,12 +31,21 @@ class EdgeClearances:
             offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
             clearances: (m + 1,) at the nodes [m].
         """
-        names = [at.tobytes() for at in offsets]
+        names, prover = [at.tobytes() for at in offsets], self._prover
         keys = [(i, names[i], names[i + 1]) for i in range(len(names) - 1)]
         unknown = np.flatnonzero([key not in self._verdicts for key in keys])
-        if len(unknown):
-            found = self._evaluated(unknown, offsets, clearances)
-            self._verdicts |= zip([keys[i] for i in unknown.tolist()], found, strict=True)
+        tails, heads = offsets[unknown], offsets[unknown + 1]
+        ends = np.stack([clearances[unknown], clearances[unknown + 1]], axis=1)
+        sampled: list[Verdict | None] = [None] * len(unknown)
+        if self._problem.delta > 0.0:
+            sampled = list(prover.sampled_edges(unknown, tails, heads, ends))
+        for k, layer in enumerate(unknown.tolist()):
+            verdict = sampled[k]
+            if verdict is None or _undecided(verdict, prover.tolerance):
+                edge = prover.obstacle_edge(layer, tails[k], heads[k])
+                proof = certify(edge, (float(ends[k, 0]), float(ends[k, 1])), prover.tolerance)
+                verdict = proof if verdict is None else _closer(proof, verdict)
+            self._verdicts[keys[layer]] = verdict
         return [self._verdicts[key] for key in keys]
 
     def half_way(self, band: OffsetBand, edges: Flags) -> Array:
@@ -61,8 +70,9 @@ class EdgeClearances:
             offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
             clearances: (m + 1,) at the nodes [m].
         """
-        verdicts = self.of_path(offsets, clearances)
-        least = np.array([v.least_clearance if v.free else 0.0 for v in verdicts])
+        least = np.array(
+            [v.least_clearance if v.free else 0.0 for v in self.of_path(offsets, clearances)]
+        )
         return motion_objective(self._problem, path_length(self._problem, offsets), least)
 
     def counts(self, node_queries: int, queries: int) -> Counts:
@@ -80,13 +90,13 @@ class EdgeClearances:
             edge_queries=queries - node_queries,
         )
 
-    def _evaluated(self, layers: IntArray, offsets: Array, clearances: Array) -> list[Verdict]:
-        """The verdicts on the edges that leave the given layers of a path."""
-        tails, heads = offsets[layers], offsets[layers + 1]
-        ends = np.stack([clearances[layers], clearances[layers + 1]], axis=1)
-        if self._problem.delta > 0.0:
-            return self._prover.sampled_edges(layers, tails, heads, ends)
-        return [
-            self._prover.certify(layer, tails[k], heads[k], (float(ends[k, 0]), float(ends[k, 1])))
-            for k, layer in enumerate(layers.tolist())
-        ]
+
+def _undecided(verdict: Verdict, tolerance: float) -> bool:
+    """Whether samples neither prove an edge free nor come within the tolerance."""
+    return not verdict.free and verdict.least_clearance > tolerance
+
+
+def _closer(proof: Verdict, sampled: Verdict) -> Verdict:
+    """The verdict of a proof, with the least clearance of both."""
+    nearest = min((proof.least_clearance, proof.time), (sampled.least_clearance, sampled.time))
+    return Verdict(proof.free, *nearest, proof.queries + sampled.queries)

@@ -1,0 +1,1 @@
+"""Compiled kernels: their compilation by numba, and the machine code on disk."""

@@ -1,0 +1,1 @@
+"""Refinement: paths moved off the lattice, with the clearance between the nodes."""
