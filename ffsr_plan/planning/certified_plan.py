@@ -47,20 +47,20 @@ class Plan(PlanData):
         """The plan flown as fast as limits allow, from rest to rest, on exactly the proven path.
 
         It rests at every corner of the path, where a velocity would have to change at once.
-        A quantity without a value is not limited; `joint_velocity` defaults to the URDF's. Limits
-        for joints are one number for all of them, or numbers by joint name.
+        A quantity without a value is not limited; `joint_velocity`, and where the URDF has such
+        limits `joint_acceleration` and `joint_jerk`, default to the URDF's. Limits for joints are
+        one number for all, or numbers by joint name, and the URDF's for joints not named.
 
         Args:
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
             thruster_acceleration: of the base origin, and thrust / mass [m/s^2]. This and
                 other limits of thrusters and of the base's velocity are refused where it floats.
-            joint_velocity: [rad/s or m/s]; the URDF's for joints not named.
+            joint_velocity: [rad/s or m/s].
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
             joint_jerk: [rad/s^3 or m/s^3].
             thruster_jerk: of the base origin [m/s^3].
-            turn_velocity: angular velocity of a base that wheels rotate [rad/s]; refused without
-                wheels, as the next.
+            turn_velocity: angular velocity of a base, refused without wheels [rad/s].
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
             velocity_jump: by how much thrusters may change the velocity of the base in one pulse
                 [m/s]; instead of resting at a corner of its path, the robot then passes it at the

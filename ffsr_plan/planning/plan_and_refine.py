@@ -49,13 +49,11 @@ def plan(
             with posture axes and `MaxMinAntSystem()` on any other.
         seed: a whole number >= 0, or a generator. The same seed gives the same plan, bit for bit,
             whatever the number of workers.
-        refine: whether to move the path off the lattice in the end, to where F of the whole motion
-            is lower; see `refine`. By default on every lattice without posture axes; with them
-            paths are not refined.
+        refine: whether to move the path off the lattice in the end, see `refine`; by default on
+            every lattice without posture axes, as with them paths are not refined.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
-        time_limit: [s] for the search, from its beginning. The set-up of the lattice before it, the
-            optimum and the refinement after it are not cut short.
+        time_limit: [s] for the search alone, without set-up, optimum and refinement.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.
         on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
 
@@ -70,10 +68,7 @@ def plan(
         WorkerDied: a worker process ended without a result.
     """
     begin = time.perf_counter()
-    if not isinstance(problem, Problem):
-        raise InvalidInput("problem", problem, "a Problem (that of a scenario is scenario.problem)")
-    chosen = planner_of(planner, problem)
-    chosen.refuse(problem)
+    chosen = _planner_for(problem, planner)
     rng, seed_number = _generator(seed)
     request = _request(chosen, refine, colonies, workers, time_limit, on_cycle)
     check_colonies(problem, request.colonies)
@@ -153,6 +148,15 @@ def _request(
         time_limit=seconds,
         on_cycle=on_cycle,
     )
+
+
+def _planner_for(problem: Problem, planner: Planner | str | None) -> Planner:
+    """The planner, after a check that it can solve the problem."""
+    if not isinstance(problem, Problem):
+        raise InvalidInput("problem", problem, "a Problem (that of a scenario is scenario.problem)")
+    chosen = planner_of(planner, problem)
+    chosen.refuse(problem)
+    return chosen
 
 
 def _certified(

@@ -57,26 +57,22 @@ def inverse_kinematics(
     axes it takes `Problem(..., reach_attitude=True)`, which `Problem.reaching` and scenario files
     set: without it the base arrives at another attitude, and the frame misses its pose.
 
-    The search is local (damped least squares): from the start's joint values first, then from
-    random ones, until the pose is met. A revolute joint whose limits span more than a turn goes the
-    shorter way: by whole turns less where wheels hold the base; where it reacts to them, a pose at
-    which no joint goes more than half a turn is preferred.
+    The search is local (damped least squares), from the start's joint values and then from random
+    ones. Revolute joints leave out whole turns where wheels hold the base; where the base reacts, a
+    pose is preferred at which no joint rotates by more than half a turn.
 
     Args:
         robot: the robot.
         scene: obstacles. Joint values at which a link touches one of them, or another link, are
             rejected. If None, collisions are not checked, not even between links.
-        frame: name of a link, joint or other frame of the model, such as a tool; of a link and a
-            joint of one name, the link.
+        frame: name of a link (first), joint or other frame of the model, such as a tool.
         position: (3,) wanted for the frame's origin, world [m].
-        attitude: (3,) wanted for the frame, ZYX angles (alpha, beta, gamma) [rad]; None if any is
-            accepted.
+        attitude: (3,) wanted for the frame, ZYX angles [rad]; None if any is accepted.
         start: (nq,) configuration at the beginning of the motion.
         mode: what actuates the base; see `Problem`.
-        base_position: (3,) base origin at the end of the motion, world [m]; None for the start's.
-            Not allowed in the mode `free-floating`.
-        base_attitude: (3,) base attitude at the end of the motion, ZYX angles [rad]; None for the
-            start's. Allowed in the mode `attitude-held` only.
+        base_position: (3,) base origin at the end if thrusters move it [m]; None for the start's.
+        base_attitude: (3,) base attitude at the end, where wheels hold it, ZYX angles [rad]; None
+            for the start's.
         seed: of the random joint values, a whole number >= 0.
 
     Returns:

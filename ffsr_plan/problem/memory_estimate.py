@@ -20,8 +20,10 @@ _BYTES_PER_NODE = 40
 _BYTES_PER_ANT = 40  # on each layer
 _BYTES_PER_COLONY, _BYTES_PER_TRAIL, _MOST_TRAILS = 20_000, 48, 10_000  # of its result
 _SECONDS_PER_PAIR = 2e-5  # distances of two links over an edge [s]
-_BYTES_PER_REFINED_EDGE = 80
-_REFINED_OFFSETS = 5  # along each axis; see `lattice.refinement`
+_BYTES_PER_REFINED_EDGE = 120
+_REFINED_OFFSETS = 5  # along each axis; see `refinement.refined_path`
+MOST_EDGES_AT_ONCE = 1_000_000
+"""Edges of the first round of refinement at most."""
 _ADVICE = "fewer divisions, a smaller half_count or fewer axes"
 
 
@@ -46,8 +48,10 @@ def check_lattice(problem: Problem, bytes_per_edge: float = 1.0, ants: int = 0) 
     per_layer = _BYTES_PER_LAYER + _BYTES_PER_SHAPE * shapes
     fixed = layers * (per_layer + _BYTES_PER_NODE * nodes) + BYTES_PER_PAIR_OF_OFFSETS * nodes**2
     fixed += _BYTES_PER_ANT * layers * ants
-    refined = _BYTES_PER_REFINED_EDGE * _REFINED_OFFSETS ** (2 * len(axes)) if axes else 0
-    most = max(bytes_per_edge, refined / nodes**2)
+    refined = _REFINED_OFFSETS ** (2 * len(axes)) if axes else 0
+    if axes and problem.delta > 0.0:
+        refined = max(refined, min(nodes**2, MOST_EDGES_AT_ONCE // lattice.divisions))
+    most = max(bytes_per_edge, _BYTES_PER_REFINED_EDGE * refined / nodes**2)
     counts = {"layers": layers, "nodes": nodes, "nodes of the next layer": nodes}
     check_memory("lattice", counts, most, _ADVICE, fixed)
     pairs = len(problem.robot.collision_model.collisionPairs)

@@ -13,6 +13,7 @@ and a node lies on the rim of its offsets.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -22,7 +23,9 @@ from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
+from ffsr_plan.problem.memory_estimate import MOST_EDGES_AT_ONCE
 from ffsr_plan.problem.objective import objective, path_length
+from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.band_search import NO_GAIN, BandSearch
 from ffsr_plan.refinement.edge_clearances import EdgeClearances
@@ -52,11 +55,14 @@ class _Level(NamedTuple):
     gain: float
 
 
-def _levels(delta: float, axes: int) -> list[_Level]:
+def _levels(problem: Problem) -> list[_Level]:
     """The levels: where delta > 0, first the lattice itself, and then fewer paths and rounds."""
-    if delta == 0.0:
+    if problem.delta == 0.0:
         return [_Level(step, 2, _EXHAUSTIVE, _ROUNDS, 0.0) for step in _STEPS]
-    reach_on_lattice, reach = (40, 2) if axes == 1 else (2, 1)
+    reach_on_lattice, reach = 2, 1
+    if len(problem.lattice.axes) == 1:
+        offsets = math.isqrt(MOST_EDGES_AT_ONCE // problem.lattice.divisions)
+        reach_on_lattice, reach = min(40, max(2, (offsets - 1) // 2)), 2
     return [
         _Level(_FINEST, reach_on_lattice, _EXHAUSTIVE, 1, 0.0),
         *(_Level(step, reach, 10, _ROUNDS, 1e-4) for step in _STEPS),
@@ -102,13 +108,14 @@ def refined_path(
         stop_requested: asked between rounds; whether to end with what has been reached.
     """
     problem = lattice.problem
-    if not problem.lattice.axes:
-        return None  # one node a layer: there is no offset to change
+    if not problem.lattice.axes or stop_requested():
+        return None  # with one node a layer there is no offset to change
     descent = _Descent(lattice, prover, offsets, clearances)
-    before = descent.value
+    before = descent.edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
+    descent.value = before
     if problem.delta > 0.0 and nodes is not None:
         descent.learn(nodes.known, nodes.bounds, lattice.indices)
-    for level in _levels(problem.delta, len(problem.lattice.axes)):
+    for level in _levels(problem):
         for _ in range(level.rounds):
             if stop_requested():
                 break
@@ -149,7 +156,7 @@ class _Descent:
         self.edges = EdgeClearances(lattice.problem, prover)
         self._queries_before, self._node_queries = prover.queries, 0
         self.clearances = np.array(clearances)
-        self.value = self.edges.motion_objective(self.coordinates @ self.unit, self.clearances)
+        self.value = np.inf
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""

@@ -77,12 +77,27 @@ def load_robot(
         The robot.
 
     Raises:
-        InvalidInput: no such robot or file, or a URDF, SRDF or mesh that cannot be used; names the
-            link or joint.
+        InvalidInput: no such robot, or a file that cannot be used; names the link or joint.
 
     Warns:
         UncheckedLinks: links with a mass and no shape at all.
     """
+    path, srdf = _files(source, srdf)
+    folders = [*_folders(package_dirs), str(path.parent)]
+    robot = robot_from_urdf(
+        read_text("robot", path, "utf-8-sig"), path.stem, folders,
+        srdf=_srdf_text(srdf),
+        containers=Containers(meshes, cylinders),
+        collision=collision,
+        inertia=inertia,
+        locked=locked,
+    )  # fmt: skip
+    warn_of_shapeless_links(robot)
+    return robot
+
+
+def _files(source: str | Path, srdf: str | Path | None) -> tuple[Path, str | Path | None]:
+    """Paths of the URDF and of the SRDF, which a bundled robot has itself; see `load_robot`."""
     given = checked_path("robot", source)
     path = bundled_files.find("urdf", str(source), ".urdf")
     if path is not None and srdf is None:
@@ -93,20 +108,15 @@ def load_robot(
             raise unknown_name("robot", str(source), [*robot_names(), "or a path to a .urdf file"])
         if not path.is_file():
             raise InvalidInput("robot", str(source), "a bundled robot or an existing .urdf file")
-    folders = [*_folders(package_dirs), str(path.parent)]
-    srdf_text = "" if srdf is None else read_text("srdf", checked_path("srdf", srdf), "utf-8-sig")
-    if srdf is not None and not srdf_text.strip():
+    return path, srdf
+
+
+def _srdf_text(srdf: str | Path | None) -> str:
+    """Text of the SRDF; empty without one."""
+    text = "" if srdf is None else read_text("srdf", checked_path("srdf", srdf), "utf-8-sig")
+    if srdf is not None and not text.strip():
         raise InvalidInput("srdf", str(srdf), "a file that is not empty")
-    robot = robot_from_urdf(
-        read_text("robot", path, "utf-8-sig"), path.stem, folders,
-        srdf=srdf_text,
-        containers=Containers(meshes, cylinders),
-        collision=collision,
-        inertia=inertia,
-        locked=locked,
-    )  # fmt: skip
-    warn_of_shapeless_links(robot)
-    return robot
+    return text
 
 
 def _folders(package_dirs: object) -> list[str]:
@@ -158,8 +168,7 @@ def robot_from_urdf(
     shapes, replacements = collision_geometry(model, root, name, folders, containers, corners)
     check_bodies(root, name, model, shapes)
     compare(root, model, shapes, replacements)
-    links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
-    disabled = disabled_pairs(srdf, f"{name}, SRDF", links)
+    disabled = disabled_pairs(srdf, f"{name}, SRDF", link_names(root))
     _add_self_collision_pairs(model, shapes, root, disabled)
     return SpaceRobot(
         name,
@@ -193,6 +202,11 @@ def warn_of_shapeless_links(robot: SpaceRobot) -> None:
             f"{'links' if len(names) > 1 else 'link'} {listed}"
         )
         warnings.warn(message, UncheckedLinks, stacklevel=3)
+
+
+def link_names(robot: ElementTree.Element) -> list[str]:
+    """Names of the links of a `<robot>` element."""
+    return [str(link.get("name")) for link in robot.findall("link")]
 
 
 def _add_self_collision_pairs(

@@ -82,12 +82,13 @@ class LimitSettings:
     """Limits of a flight as the user names them; None where there is no limit.
 
     Attributes:
-        joint_acceleration: [rad/s^2 or m/s^2].
+        joint_acceleration: [rad/s^2 or m/s^2]; the URDF's, if it has any, for joints that are not
+            named.
         thruster_acceleration: of the base origin, equal to thrust / mass [m/s^2].
         joint_velocity: [rad/s or m/s]; the URDF's for joints that are not named.
         base_velocity: of the base origin [m/s].
         joint_torque: [N m or N].
-        joint_jerk: [rad/s^3 or m/s^3].
+        joint_jerk: [rad/s^3 or m/s^3]; the URDF's, if it has any, for joints that are not named.
         thruster_jerk: of the base origin [m/s^3].
         turn_velocity: of a base that wheels rotate [rad/s].
         turn_acceleration: of a base that wheels rotate [rad/s^2].
@@ -117,7 +118,7 @@ class LimitSettings:
         """The limits as arrays.
 
         Args:
-            robot: gives the joints and the URDF's velocity limits.
+            robot: gives the joints and the URDF's limits on velocity, acceleration and jerk.
 
         Raises:
             InvalidInput: a joint that the robot does not have.
@@ -133,9 +134,9 @@ class LimitSettings:
             _row(
                 self.thruster_acceleration,
                 self.turn_acceleration,
-                joints("joint_acceleration"),
+                joints("joint_acceleration", robot.acceleration),
             ),
-            _row(self.thruster_jerk, None, joints("joint_jerk")),
+            _row(self.thruster_jerk, None, joints("joint_jerk", robot.jerk)),
             joints("joint_torque"),
             self.velocity_jump,
         )
@@ -174,7 +175,7 @@ def _refuse_limits_without_actuator(mode: Mode, given: dict[str, Any]) -> None:
 
 
 def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, floats: bool) -> None:
-    """Check that everything that moves has a limit on its acceleration.
+    """Check that everything that moves has a limit on its acceleration, and pulses none on jerk.
 
     There is no default that suits both a robot of one kilogram and one of ten tonnes.
 
@@ -185,9 +186,13 @@ def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, fl
         floats: whether the base has no thrusters.
 
     Raises:
-        InvalidInput: naming the missing limit.
+        InvalidInput: naming the missing limit, or the joint whose jerk the URDF limits.
     """
     moves = np.max(runs.rates(), axis=0) > 0.0
+    for k, name in enumerate(robot.joint_names, start=2):
+        if limits.velocity_jump > 0.0 and moves[k] and np.isfinite(limits.jerk[k]):
+            allowed = f"0, as the URDF limits the jerk of joint {name}: a jump has an infinite jerk"
+            raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
     needed = {"thruster_acceleration": not floats, "turn_acceleration": bool(moves[1])}
     for k, (name, is_needed) in enumerate(needed.items()):
         if is_needed and not np.isfinite(limits.acceleration[k]):

@@ -76,7 +76,8 @@ class LatticePath:
             found.append("the base leaves the window of the lattice")
         if self.bent and not (problem.lattice.postures and problem.reach_attitude):
             found.append("the joint values are not those of the nodes")
-        if plan.objective > plan.lattice_objective * (1.0 + AGREEMENT) and not self.bent:
+        rises = plan.objective > plan.lattice_objective * (1.0 + AGREEMENT)
+        if rises and problem.delta == 0.0 and not self.bent:
             found.append(
                 f"F is {plan.objective:.12g}, above F on the lattice, {plan.lattice_objective:.12g}"
             )
@@ -91,7 +92,8 @@ class LatticePath:
         exact = plan.planner.exact and not problem.lattice.postures
         if exact and abs(plan.optimum - plan.lattice_objective) > AGREEMENT * plan.optimum:
             found.append("the optimum is not F of the exact planner's own path")
-        if plan.optimum < self._least() * (1.0 - AGREEMENT):
+        is_exact = not problem.lattice.postures  # otherwise the optimum is a bound of its own
+        if is_exact and plan.optimum < self._least() * (1.0 - AGREEMENT):
             found.append(f"the optimum is below F of any path, {self._least():.12g}")
         return found
 

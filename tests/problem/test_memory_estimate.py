@@ -12,7 +12,9 @@ from ffsr_plan.problem import memory_estimate
 from ffsr_plan.search.postures import posture_lattice
 
 
-def problem(robot, divisions, axes=(), postures=(), joints=("left_2",), mode="free-flying"):
+def problem(
+    robot, divisions, axes=(), postures=(), joints=("left_2",), mode="free-flying", delta=0.0
+):
     across = {
         name: fp.Axis(count, 0.6 / count)
         for name, count in zip(("lateral", "normal"), axes, strict=False)
@@ -23,6 +25,7 @@ def problem(robot, divisions, axes=(), postures=(), joints=("left_2",), mode="fr
         robot.neutral(),
         robot.configuration((10.0, 0.0, 0.0), joints=dict.fromkeys(joints, 0.3)),
         mode=mode,
+        delta=delta,
         lattice=fp.Lattice(divisions, **across, postures=postures),
     )
 
@@ -63,8 +66,11 @@ def test_a_lattice_takes_about_the_memory_estimated(robot, planner, divisions, a
     assert peak / 2.0 < estimate < 3.0 * peak
 
 
-def test_a_refinement_takes_about_the_memory_estimated(robot):
-    given = problem(robot, 100, (2, 2))
+@pytest.mark.parametrize(
+    ("divisions", "axes", "delta"), [(100, (2, 2), 0.0), (40, (40,), 0.1), (1000, (8,), 0.1)]
+)
+def test_a_refinement_takes_about_the_memory_estimated(robot, divisions, axes, delta):
+    given = problem(robot, divisions, axes, delta=delta)
     estimate, peak = estimate_and_peak(lambda: fp.plan(given, "lattice-optimum"))
     assert peak / 2.0 < estimate < 3.0 * peak
 

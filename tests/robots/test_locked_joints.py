@@ -107,7 +107,9 @@ def test_locked_joints_stay_locked_in_plans_and_scenarios(tmp_path):
 
 
 def test_without_mimics_or_locks_the_text_stays(tmp_path):
-    assert load(tmp_path, hand(mimic="")).urdf == hand(mimic="")
+    free = load(tmp_path, hand(mimic=""))
+    assert load(tmp_path, hand(mimic=""), locked={}).urdf == free.urdf
+    assert free.urdf.count("fixed") == hand(mimic="").count("fixed")
 
 
 def test_the_locks_of_a_mount_cannot_be_changed():

@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -99,9 +100,10 @@ def test_ctrl_c_during_the_refinement_keeps_the_plan(problem, monkeypatch):
         return best_path(search, candidates)
 
     monkeypatch.setattr(BandSearch, "best_path", pressed)
-    plan = fp.plan(problem, fp.MaxMinAntSystem(cycles=20))
+    plan = fp.plan(replace(problem, delta=0.0), fp.MaxMinAntSystem(cycles=20))
     assert plan.interrupted
     assert len(rounds) == 1
+    assert plan.objective < plan.lattice_objective
     assert plan.verify(20).ok
 
 

@@ -85,6 +85,25 @@ def test_joints_keep_the_urdfs_velocities_by_default(robot):
     assert told.duration == pytest.approx(0.8 / 0.1 + 0.1 / 0.5)  # it is half as fast as left_1
 
 
+def test_joints_keep_the_urdfs_accelerations_and_jerks_by_default(robot):
+    text = robot.urdf.replace('velocity="0.5"', 'velocity="0.5" acceleration="0.2"')
+    urged = robot_from_urdf(text, "limited")
+    start, goal = urged.configuration(), urged.configuration(joints={"left_1": 1.6})
+    motion = Motion(urged, "free-floating", start, goal, np.zeros((4, 3)))
+    assert flown(motion).duration == pytest.approx(1.6 / 0.5 + 0.5 / 0.2)
+    told = flown(motion, joint_acceleration=1.0)
+    assert told.duration == pytest.approx(1.6 / 0.5 + 0.5 / 1.0)
+    smooth = robot_from_urdf(text.replace('velocity="0.5"', 'velocity="0.5" jerk="0.4"'), "jerk")
+    motion = Motion(smooth, "free-floating", start, goal, np.zeros((4, 3)))
+    assert flown(motion).duration == pytest.approx(1.6 / 0.5 + 0.5 / 0.2 + 0.2 / 0.4)
+    way = np.array([(0, 0, 0), (1, 1, 0), (2, 0, 0)], dtype=float)
+    motion = Motion(
+        smooth, "free-flying", start, smooth.configuration((2, 0, 0), joints={"left_1": 1}), way
+    )
+    with pytest.raises(fp.InvalidInput, match=r"velocity_jump: .* URDF .* jerk of joint left_1"):
+        flown(motion, thruster_acceleration=0.1, velocity_jump=0.1)
+
+
 def test_a_velocity_of_zero_in_the_urdf_is_not_taken_for_a_limit(robot):
     still = robot_from_urdf(robot.urdf.replace('velocity="0.5"', 'velocity="0"'), "still")
     start, goal = still.configuration(), still.configuration(joints={"left_1": 1.0})

@@ -112,8 +112,8 @@ are medians; times are processor times. {minutes:.1f} minutes in all.
 
 - F contains the clearances at the nodes; F of the whole motion, `plan.motion_objective`, the least
   clearance on every edge. Refinement lowers the latter.
-- On the lattice, where F alone counts, a large delta does not make paths safer: they pass obstacles
-  closely between two nodes. After refinement the clearance grows with delta.
+- On the lattice, where F counts, a large delta lets some paths pass obstacles closely between two
+  nodes. After refinement every quartile of the clearance grows with delta, and so does the least.
 - "Scenes with less than half" have less than half of the clearance that they have at the delta
   before.
 """

@@ -118,7 +118,7 @@ def test_a_wall_is_named_with_its_layer_and_obstacles(point):
     goal = point.configuration((6.0, 0.0, 0.0))
     problem = fp.Problem(point, scene, point.configuration(), goal,
                          lattice=fp.Lattice(6, fp.Axis(2, 0.6)))  # fmt: skip
-    with pytest.raises(fp.NoPath, match=r"layer 3 of 6 .*finer spacing") as caught:
+    with pytest.raises(fp.NoPath, match=r"layer 3 of 6 .*0\.6 m: wider, or finer") as caught:
         fp.plan(problem)
     assert caught.value.layer == 3
     assert 0 not in caught.value.obstacles

@@ -216,7 +216,7 @@ def test_ctrl_c_returns_the_best_so_far_marked_as_such():
         "p = fp.load_scenario('fig2a')\n"
         "fp.plan(p, fp.MaxMinAntSystem(cycles=5))\n"
         "print('planning', flush=True)\n"
-        "plan = fp.plan(p, fp.MaxMinAntSystem(cycles=10**7))\n"
+        "plan = fp.plan(p, fp.MaxMinAntSystem(cycles=10**6))\n"
         "print(plan.interrupted, plan.verify(20).ok)\n"
     )
     process = subprocess.Popen(
