@@ -8,8 +8,11 @@ from xml.etree import ElementTree
 
 import pinocchio as pin
 
+from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.meshes.mesh_addresses import find
+
+_BYTES_PER_CUBE = 128  # four tensors in Pinocchio's data of a model, four data during a plan
 
 
 def build_model(robot: ElementTree.Element, where: str) -> pin.Model:
@@ -20,14 +23,19 @@ def build_model(robot: ElementTree.Element, where: str) -> pin.Model:
         where: file or robot name that starts every message.
 
     Raises:
-        InvalidInput: a URDF that Pinocchio refuses, with Pinocchio's message.
+        InvalidInput: a URDF that Pinocchio refuses, with Pinocchio's message, or more joints than
+            memory allows.
     """
     text = _with_shapes(robot, lambda _: False)  # Pinocchio does not know all shapes
     try:
-        return pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
+        model = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
     except ValueError as error:
         reason = str(error).strip().splitlines()[-1]
         raise InvalidInput(where, reason, "a URDF that Pinocchio can load") from None
+    size = {"cube of degrees of freedom": model.nv**3}
+    advice = f"fewer than {model.nv - 6} moving joints; `locked` fixes some of them"
+    check_memory(where, size, _BYTES_PER_CUBE, advice)
+    return model
 
 
 def visual_model(

@@ -183,7 +183,8 @@ def test_the_interface_is_covered(calls):
         "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof", "History",
         "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement", "Report",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
-        "UncheckedLinks", "RobotSummary", "Scenario", "SearchResult", "Solution", "SpaceRobot",
+        "UncheckedLinks", "RobotSummary", "Scenario",
+        "SearchResult", "Solution", "SpaceRobot",
         "States", "TimedPlan", "Trails", "Verdict", "WheelMomentum",
     }  # fmt: skip
     without_arguments = {"arm_names", "robot_names", "robot_summaries"}
