@@ -126,6 +126,20 @@ def test_pulses_drawn_out_add_to_the_thrust_of_moving_arms(seed, mode):
     assert_drawn_out_within(flight, USUAL["thruster_acceleration"], count=10_000)
 
 
+@pytest.mark.parametrize(("aside", "largest"), [(0.2, 0.02), (-0.2, 0.0177)])
+def test_fast_arms_leave_less_thrust_for_a_pulse(robot, aside, largest):
+    """An arm swings while the base passes a corner: against the pulse, and along with it."""
+    start = robot.configuration(joints={"left_1": -1.5, "left_2": 0.3})
+    goal = robot.configuration((1.0, 0, 0), joints={"left_1": 1.5, "left_2": 0.9})
+    motion = Motion(
+        robot, "free-flying", start, goal, np.array([(0, 0, 0), (0.5, aside, 0), (1, 0, 0)])
+    )
+    fast = {"joint_acceleration": 1.0, "joint_velocity": 2.0, "thruster_acceleration": 0.02}
+    flight = flown(motion, **fast, velocity_jump=0.1)
+    assert len(flight.pulses) == 1
+    assert assert_drawn_out_within(flight, 0.02, count=4_000) > 0.99 * largest
+
+
 def test_torques_keep_their_limit_during_a_pulse():
     """The joints have to carry their links along while the base is pushed."""
     motion = bent_motion(7, "attitude-held")
