@@ -89,11 +89,10 @@ class LatticePath:
             elif abs(value - plan.lattice_objective) > share * max(value, 1e-12):
                 stated = plan.lattice_objective
                 found.append(f"F on the lattice is {value:.12g}, not {stated:.12g}")
-        exact = plan.planner.exact and not problem.lattice.postures
-        if exact and abs(plan.optimum - plan.lattice_objective) > AGREEMENT * plan.optimum:
+        own = plan.planner.exact and plan.optimum_is_exact
+        if own and abs(plan.optimum - plan.lattice_objective) > AGREEMENT * plan.optimum:
             found.append("the optimum is not F of the exact planner's own path")
-        is_exact = not problem.lattice.postures  # otherwise the optimum is a bound of its own
-        if is_exact and plan.optimum < self._least() * (1.0 - AGREEMENT):
+        if plan.optimum < self._least() * (1.0 - AGREEMENT):
             found.append(f"the optimum is below F of any path, {self._least():.12g}")
         return found
 

@@ -23,15 +23,14 @@ def lower_bound(lattice: PostureLattice) -> float:
 
     problem, base = lattice.problem, lattice.base
     m, count = problem.lattice.divisions, len(base.offsets)
-    nodes = np.zeros((m + 1, count))
+    apart = np.full((m + 1, count), np.inf)
     if origin_is_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets
         scene = problem.scene
-        apart = np.full(places.shape[:2], np.inf)
         for center, radius in zip(scene.centers, scene.radii, strict=True):
             apart = np.minimum(apart, np.linalg.norm(places - center, axis=2) - radius)
-        nodes = nearness(problem, apart)
-        nodes[[0, -1]] = 0.0
+    nodes = nearness(problem, apart)  # at least that of `clearance_cap`
+    nodes[[0, -1]] = 0.0
     costs, before = np.full((m + 1, count), np.inf), np.zeros((m + 1, count), dtype=np.int64)
     costs[0, base.origin] = 0.0
     status = np.zeros((m, count, count), dtype=np.int8)
