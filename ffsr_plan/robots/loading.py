@@ -25,7 +25,7 @@ from ffsr_plan.robots.srdf import disabled_pairs
 from ffsr_plan.robots.urdf.adjacent_links import may_touch
 from ffsr_plan.robots.urdf.canonical import read_urdf, urdf_text
 from ffsr_plan.robots.urdf.inertias import balanced_links
-from ffsr_plan.robots.urdf.joints import check_movable, rate_limits
+from ffsr_plan.robots.urdf.joints import check_ranges, rate_limits
 from ffsr_plan.robots.urdf.links import shapeless_links, unchecked_links
 
 
@@ -163,7 +163,7 @@ def robot_from_urdf(
     folders, corners = list(package_dirs), dict(meshes or {})
     root = read_urdf(text, name, collision=collision, inertia=inertia)
     fix_locked_joints(root, locked, name)
-    check_movable(root, name)
+    check_ranges(root, name)
     model = build_model(root, name)
     shapes, replacements = collision_geometry(model, root, name, folders, containers, corners)
     check_bodies(root, name, model, shapes)

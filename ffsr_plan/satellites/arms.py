@@ -13,7 +13,7 @@ from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.locked_joints import fix_locked_joints
 from ffsr_plan.robots.srdf import disabled_pairs
 from ffsr_plan.robots.urdf.canonical import read_urdf
-from ffsr_plan.robots.urdf.joints import check_movable
+from ffsr_plan.robots.urdf.joints import check_ranges
 
 _UR = "ur_description/srdf/ur5.srdf"
 ARMS = {
@@ -88,7 +88,7 @@ def load_arm(
         collision = "collision" if path == Path(source) else "visual"
     robot = read_urdf(text, where, collision=collision, inertia=inertia)
     fix_locked_joints(robot, locked, where)
-    check_movable(robot, where)
+    check_ranges(robot, where)
     children = {str(child.get("link")) for child in robot.iterfind("joint/child")}
     names = [str(link.get("name")) for link in robot.findall("link")]
     root = next(name for name in names if name not in children)

@@ -26,7 +26,7 @@ def read_urdf(
 ) -> ElementTree.Element:
     """Read a URDF.
 
-    Joints that mimic others and empty joint ranges stay in; see `joints.check_movable`.
+    Joints that mimic others and empty joint ranges stay in; see `joints.check_ranges`.
 
     Args:
         text: the URDF.

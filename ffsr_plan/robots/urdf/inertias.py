@@ -57,7 +57,7 @@ def add_inertial(
     """
     inertial = link.find("inertial")
     if inertial is None:
-        return  # a frame; `check_loaded` checks that each moving body has a mass
+        return  # a frame; `plausibility.check_bodies` checks that each moving body has a mass
     check_element(inertial, f"{where}, inertial")
     copy = ElementTree.SubElement(part, "inertial")
     add_origin(copy, inertial, f"{where}, inertial")

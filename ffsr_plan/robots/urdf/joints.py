@@ -85,21 +85,18 @@ def position_limits(joint: ElementTree.Element) -> tuple[float, float]:
     return float(limit.get("lower", "0")), float(limit.get("upper", "0"))
 
 
-def check_movable(robot: ElementTree.Element, where: str) -> None:
-    """Check that the moving joints of a canonical robot move, each on its own.
+def check_ranges(robot: ElementTree.Element, where: str) -> None:
+    """Check that the moving joints of a canonical robot have a range.
 
     Args:
         robot: the canonical robot, joints that the user locks being fixed.
         where: file or robot name that starts every message.
 
     Raises:
-        InvalidInput: a joint that mimics another, or a range that is empty.
+        InvalidInput: a range that is empty.
     """
     for joint in robot.findall("joint"):
         about = f"{where}, joint '{joint.get('name')}'"
-        if joint.find("mimic") is not None:
-            allowed = "joints that move on their own; ffsr_plan.compose fixes others with `locked`"
-            raise InvalidInput(about, "mimic", allowed)
         lower, upper = position_limits(joint)
         if lower >= upper and joint.get("type") != "fixed":
             raise InvalidInput(f"{about}, limit", [lower, upper], "lower less than upper")
