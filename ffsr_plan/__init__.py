@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from ffsr_plan.collision.distances import Clearance, clearance
 from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
 from ffsr_plan.core import errors
+from ffsr_plan.core.contacts import Contact
 from ffsr_plan.core.errors import (
     AttitudeOutOfReach,
     FfsrPlanError,
@@ -32,7 +33,6 @@ from ffsr_plan.core.errors import (
     UnprovenPath,
     WorkerDied,
 )
-from ffsr_plan.core.formatting import Contact
 from ffsr_plan.dynamics import momentum
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.inverse_dynamics import States

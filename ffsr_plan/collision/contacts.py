@@ -6,8 +6,8 @@ import numpy as np
 
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.contacts import Contact
 from ffsr_plan.core.errors import GoalInCollision, StartInCollision
-from ffsr_plan.core.formatting import Contact
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any, ClassVar, NamedTuple
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.formatting import Contact, closing_obstacles, contact_list, obstacle_name
+from ffsr_plan.core.contacts import Contact, closing_obstacles, contact_list, obstacle_name
 
 _MOST_CHARACTERS_OF_A_VALUE = 120
 _MOST_CHARACTERS = 600  # of the field, and of what is allowed

@@ -1,14 +1,11 @@
-"""Numbers, tables and contacts as text."""
+"""Numbers and tables as text."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from html import escape
-from typing import NamedTuple
 
 import numpy as np
-
-_MOST_NAMED = 12  # obstacles or contacts in one message
 
 
 def proven(clearance: float) -> str:
@@ -43,79 +40,3 @@ def html_table(title: str, rows: Mapping[str, str]) -> str:
         f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows.items()
     )
     return f"<table><caption>{escape(title)}</caption>{cells}</table>"
-
-
-class Contact(NamedTuple):
-    """Two bodies that touch, or come too close.
-
-    Attributes:
-        link: name of the link.
-        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
-            scene.
-        depth: penetration depth [m], zero in contact, negative apart.
-        source: what the sphere comes from, such as the name of a mesh; empty where that is unknown.
-    """
-
-    link: str
-    obstacle: int | str | None
-    depth: float
-    source: str = ""
-
-
-def obstacle_name(obstacle: int | str | None, source: str = "") -> str:
-    """An obstacle as messages name it.
-
-    Args:
-        obstacle: index of a sphere, name of a link, or None.
-        source: what the sphere comes from, empty if that is unknown.
-    """
-    if obstacle is None:
-        return "no obstacle"
-    if isinstance(obstacle, str):
-        return f"link '{obstacle}'"
-    return f"{source} (sphere {obstacle})" if source else f"obstacle {obstacle}"
-
-
-def contact_list(contacts: tuple[Contact, ...]) -> str:
-    """The deepest contact of each link with each link, mesh or single sphere.
-
-    Args:
-        contacts: the deepest first.
-    """
-    groups: dict[tuple[str, str], list[Contact]] = {}
-    for contact in contacts:
-        name = contact.source or obstacle_name(contact.obstacle)
-        groups.setdefault((contact.link, name), []).append(contact)
-    texts = []
-    for (link, _), group in groups.items():
-        more = f" and {counted(len(group) - 1, 'sphere')} more of it" if len(group) > 1 else ""
-        name = obstacle_name(group[0].obstacle, group[0].source)
-        texts.append(f"link '{link}' is {group[0].depth:.4g} m inside {name}{more}")
-    if len(texts) > _MOST_NAMED:
-        texts[_MOST_NAMED:] = [f"{len(texts) - _MOST_NAMED} more"]
-    return "; ".join(texts)
-
-
-def closing_obstacles(contacts: tuple[Contact, ...], spheres: list[int]) -> str:
-    """Spheres by what they come from, and the links that meet them.
-
-    Args:
-        contacts: give the sources and the links.
-        spheres: indices in the scene; the text is empty if there are none.
-    """
-    by_source: dict[str, list[int]] = {}
-    sources = {contact.obstacle: contact.source for contact in contacts}
-    for sphere in spheres:
-        by_source.setdefault(sources.get(sphere, ""), []).append(sphere)
-    parts = []
-    for source, members in by_source.items():
-        word = "sphere" if source else "obstacle"
-        listed = ", ".join(map(str, members[:_MOST_NAMED]))
-        more = len(members) - _MOST_NAMED
-        text = f"{word}{'s' if len(members) > 1 else ''} {listed}"
-        text += f" and {more} more" if more > 0 else ""
-        parts.append(f"{source} ({text})" if source else text)
-    links = sorted({f"'{c.link}'" for c in contacts if isinstance(c.obstacle, int)})
-    verb = "link {} meets" if len(links) == 1 else "links {} meet"
-    meet = f", which {verb.format(', '.join(links))}" if links else ""
-    return " and ".join(parts) + (meet if parts else "")

@@ -8,8 +8,8 @@ import numpy as np
 
 from ffsr_plan.collision.contacts import named
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
+from ffsr_plan.core.contacts import Contact
 from ffsr_plan.core.errors import InvalidInput, NoPath
-from ffsr_plan.core.formatting import Contact
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
 from ffsr_plan.lattice.layered_lattice import LayeredLattice

@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 from ffsr_plan.collision.contacts import contacts
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.checks import finite_array
+from ffsr_plan.core.contacts import contact_list
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.formatting import contact_list, counted, html_table
+from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import rotation_vector, to_angles
 from ffsr_plan.core.setting_rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings

@@ -7,7 +7,7 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.core import errors
-from ffsr_plan.core.formatting import Contact
+from ffsr_plan.core.contacts import Contact
 
 TOUCHING = (Contact("a", 3, 0.2, "x.stl"), Contact("a", 4, 0.1, "x.stl"), Contact("a", "b", 0.1))
 EXAMPLES = [
