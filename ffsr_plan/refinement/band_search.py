@@ -11,7 +11,7 @@ from ffsr_plan.lattice.shortest_path import LazyShortestPath
 from ffsr_plan.problem.objective import nearness
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict
-from ffsr_plan.refinement.edge_clearances import EdgeClearances
+from ffsr_plan.refinement.edge_clearances import EdgeClearances, proven_clearances
 from ffsr_plan.refinement.offset_band import OffsetBand
 
 NO_GAIN = 1.0 - 1e-12
@@ -86,7 +86,7 @@ class BandSearch:
     def _learn(self, path: IntArray, verdicts: list[Verdict]) -> int | None:
         """Raise the costs along a path to the true ones; the first layer with a higher one."""
         steps, tails, heads = np.arange(len(verdicts)), path[:-1], path[1:]
-        least = np.array([v.least_clearance if v.free else 0.0 for v in verdicts])
+        least = proven_clearances(verdicts)
         costs = self._band.lengths[steps, tails, heads] + nearness(self._problem, least)
         worse = np.flatnonzero(costs > self._costs[steps, tails, heads])
         self._costs[worse, tails[worse], heads[worse]] = costs[worse]

@@ -70,9 +70,7 @@ class EdgeClearances:
             offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
             clearances: (m + 1,) at the nodes [m].
         """
-        least = np.array(
-            [v.least_clearance if v.free else 0.0 for v in self.of_path(offsets, clearances)]
-        )
+        least = proven_clearances(self.of_path(offsets, clearances))
         return motion_objective(self._problem, path_length(self._problem, offsets), least)
 
     def counts(self, node_queries: int, queries: int) -> Counts:
@@ -89,6 +87,11 @@ class EdgeClearances:
             node_queries=node_queries,
             edge_queries=queries - node_queries,
         )
+
+
+def proven_clearances(verdicts: list[Verdict]) -> Array:
+    """(k,) least clearances of edges [m], zero on those that are not proven free."""
+    return np.array([each.least_clearance if each.free else 0.0 for each in verdicts])
 
 
 def _undecided(verdict: Verdict, tolerance: float) -> bool:

@@ -40,7 +40,6 @@ class RateBounds:
     Attributes:
         rates: (m, nd) changes of the joint values over each edge [rad or m].
         shapes: (m, s) speed of any point of each shape, relative to the base [m].
-        pairs: (m, p) speed at which the shapes of each pair can approach each other [m].
         reach: (s,) largest distance of any point of a shape from the base origin [m].
     """
 

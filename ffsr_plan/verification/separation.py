@@ -139,28 +139,3 @@ def arrays_of(shapes: Sequence[Shape]) -> SolidArrays:
         [shape.swell for shape in shapes],
         [shape.half for shape in shapes],
     )
-
-
-def separation(a: Shape, pose_a: Array, b: Shape, pose_b: Array) -> Array:
-    """Lower bound on the signed distance of two shapes, exact to rounding where they are apart.
-
-    Args:
-        a: the first shape.
-        pose_a: (N, 4, 4) poses of it.
-        b: the second shape.
-        pose_b: (N, 4, 4) poses of it.
-
-    Returns:
-        (N,) bounds [m], negative in penetration.
-    """
-    count = len(pose_a)
-    poses = np.stack([pose_a, pose_b], axis=1)
-    found: Array = pair_distances(
-        arrays_of([a, b]),
-        np.column_stack([np.arange(count), np.zeros(count, dtype=np.int64)]),
-        np.array([[0, 1]]),
-        np.ascontiguousarray(poses[..., :3, :3]),
-        np.ascontiguousarray(poses[..., :3, 3]),
-        np.full(count, np.inf),
-    )
-    return found

@@ -50,7 +50,8 @@ class Report:
         not_checked: one sentence for each part of the plan that was not checked.
         unchecked: links that have a mass or a visual shape but no collision shape: nothing is known
             about obstacles in their way.
-        least_clearance: least link-to-sphere distance over all samples [m].
+        least_clearance: least link-to-sphere distance over all samples [m]; of a hull with the
+            centre of a sphere inside it, a lower bound.
         clearance_bound: lower bound on that distance all along the motion, between the samples too,
             from bounds on the travel of all points [m].
         least_self_separation: least lower bound on the distance of links that must not touch, over
@@ -187,7 +188,7 @@ def _collisions(plan: PlanData, swept: Swept) -> list[str]:
     if swept.clearance is not None:
         least, edge, names = swept.clearance
         if least <= 0.0:
-            depth = f"{-least:.3g} m inside"
+            depth = f"up to {-least:.3g} m inside"
             problems.append(f"link '{names[0]}' is {depth} an obstacle on edge {edge}")
     if swept.separation is not None and swept.separation.value <= 0.0:
         _, edge, names = swept.separation

@@ -6,8 +6,8 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from ffsr_plan.verification.solids import sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies, pose
+from tests.helpers.solid_distances import sphere_distance
 
 
 def shape_distance(shape, pose, center, radius):

@@ -12,8 +12,8 @@ import ffsr_plan as fp
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
-from ffsr_plan.verification.solids import least_sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies, pose
+from tests.helpers.solid_distances import least_sphere_distance
 from tests.helpers.urdf_builders import capsule, cylinder, random_robot
 
 SAMPLES = 2000

@@ -12,9 +12,9 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.travel_bound import TravelBound
 from ffsr_plan.robots.loading import robot_from_urdf
-from ffsr_plan.verification.separation import separation
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 from tests.helpers.random_robots import random_tree
+from tests.helpers.solid_distances import separation
 from tests.helpers.urdf_builders import box, inertial, joint, link, random_robot, urdf
 
 seeds = st.integers(0, 100_000)

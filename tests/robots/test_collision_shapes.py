@@ -15,10 +15,11 @@ from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.meshes.mesh_files import hull, hull_corners
 from ffsr_plan.robots.collision_shapes import Containers, convex, sharpen
 from ffsr_plan.robots.loading import robot_from_urdf
-from ffsr_plan.verification.solids import Shape, sphere_distance
+from ffsr_plan.verification.solids import Shape
 from ffsr_plan.verification.urdf_reading import Bodies
 from tests.helpers import closed_forms
 from tests.helpers.single_link_robots import MASS, blob, inside_out, one_link
+from tests.helpers.solid_distances import sphere_distance
 from tests.helpers.urdf_builders import (
     box,
     capsule,
@@ -228,8 +229,8 @@ def test_self_distance_bounds_of_verification_match_coal(seed):
     bodies = Bodies(robot.urdf, "", robot.replacements)
     if query.empty:
         return
-    from ffsr_plan.verification.separation import separation
     from ffsr_plan.verification.urdf_reading import pose
+    from tests.helpers.solid_distances import separation
 
     for _ in range(3):
         q = random_configuration(robot, rng)

@@ -10,9 +10,12 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.robots.collision_shapes import Containers
 from ffsr_plan.robots.loading import robot_from_urdf
-from ffsr_plan.verification.solids import Shape, least_sphere_distance, sphere_distance
+from ffsr_plan.verification.distances.solid_distance_kernels import sphere_distances
+from ffsr_plan.verification.separation import arrays_of
+from ffsr_plan.verification.solids import Shape
 from ffsr_plan.verification.urdf_reading import Bodies
 from tests.helpers.single_link_robots import MASS, blob, inside_out, one_link
+from tests.helpers.solid_distances import sphere_distance
 from tests.helpers.urdf_builders import box, capsule, cylinder, inertial, joint, link, mesh, urdf
 
 seeds = st.integers(0, 10_000)
@@ -136,7 +139,15 @@ def test_hull_distances_of_verification_agree_with_trimesh(seed):
     found = sphere_distance(shape, poses, centers, radii)
     true = inside_out(solid, centers - poses[7, :3, 3]) - radii
     assert np.allclose(found[7], true, atol=1e-9)
-    assert least_sphere_distance(shape, poses, centers, radii) == pytest.approx(found.min())
+    order, still = np.arange(40), np.tile(np.eye(3), (1, 1, 1, 1))
+    asked, ranges = np.zeros((40, 2), dtype=np.int64), np.column_stack([order, order + 1])
+    compiled = sphere_distances(
+        arrays_of([shape]), asked, still, poses[7:8, None, :3, 3], still[0], np.zeros((1, 3)),
+        centers, radii, order, ranges,
+    )  # fmt: skip
+    inside = true + radii <= 0.0  # the centre lies in the hull: a lower bound will do
+    assert np.allclose(compiled[~inside], true[~inside], atol=1e-9)
+    assert np.all(compiled[inside] <= true[inside] + 1e-9)
 
 
 def test_a_page_and_pictures_can_be_made_of_all_kinds_of_shapes(arm_plan, tmp_path):

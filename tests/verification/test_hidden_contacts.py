@@ -8,8 +8,8 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import frozen
-from ffsr_plan.verification.solids import least_sphere_distance, sphere_distance
 from tests.helpers.careless_plans import MODES, careless_plan, placed
+from tests.helpers.solid_distances import least_sphere_distance, sphere_distance
 
 
 def forged(plan, center, radius):

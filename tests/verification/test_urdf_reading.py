@@ -12,9 +12,9 @@ from ffsr_plan.meshes.mesh_files import hull
 from ffsr_plan.robots.collision_shapes import convex
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification import solids
-from ffsr_plan.verification.separation import separation
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 from tests.helpers.closed_forms import clearance, clearances
+from tests.helpers.solid_distances import separation
 from tests.helpers.urdf_builders import (
     box,
     cylinder,

@@ -21,8 +21,8 @@ import ompl.util as ou
 import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, publish, random_problem, table
 from ffsr_plan.collision.distances import ObstacleQuery
-from ffsr_plan.verification.solids import sphere_distance
 from ffsr_plan.verification.urdf_reading import Bodies, pose
+from tests.helpers.solid_distances import sphere_distance
 
 FIRST_SEED = 2000
 DEFAULT, FINE = 0.01, 0.002  # of the plane's diagonal between two validity checks
@@ -84,7 +84,8 @@ class Plane:
         for shape in self.bodies.shapes:
             placed = poses[shape.link] @ shape.placement
             first = placed[0, :3, 3]
-            reach = shape.radius + np.linalg.norm(placed[:, :3, 3] - first, axis=1).max()
+            size = float(np.linalg.norm(shape.points, axis=1).max()) + shape.swell
+            reach = size + np.linalg.norm(placed[:, :3, 3] - first, axis=1).max()
             near = np.linalg.norm(scene.centers - first, axis=1) <= scene.radii + reach
             if near.any():
                 apart = sphere_distance(shape, placed, scene.centers[near], scene.radii[near])

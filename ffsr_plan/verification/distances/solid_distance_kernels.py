@@ -40,7 +40,8 @@ def sphere_distances(
         ranges: (q, 2) begin and end of each question's list.
 
     Returns:
-        (q,) signed distances [m]; infinite for an empty list.
+        (q,) signed distances [m], infinite for an empty list. Where a centre lies inside a hull,
+        the distance is a lower bound, which is negative.
     """
     result = np.full(len(asked), np.inf)
     local, between = np.empty((1, 3)), np.empty(3)
