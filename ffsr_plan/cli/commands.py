@@ -11,16 +11,16 @@ import io
 import signal
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from ffsr_plan.cli.planning import LiveOptions, Options, plan_and_report
 from ffsr_plan.cli.printed_tables import flight_table, report_table, robot_table
 from ffsr_plan.cli.result_files import check_replacement, check_target, unused_path
-from ffsr_plan.cli.terminal import INTERRUPTED, errors_on_stderr, out_console, with_progress
+from ffsr_plan.cli.terminal import errors_on_stderr, out_console, with_progress
 from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
-from ffsr_plan.search.interruption import CtrlC, raise_ctrl_c
+from ffsr_plan.search.interruption import end_command
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -227,8 +227,9 @@ def view(
     with errors_on_stderr():
         from ffsr_plan.planning.certified_plan import Plan
 
-        Plan.load(plan_file).show(port, block=True, open_browser=browser)
-        CtrlC.raised = False  # it ended the view, as it should
+        shown = Plan.load(plan_file).show(port, block=False, open_browser=browser)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        shown.wait(f"{shown.url} shows the plan until Ctrl-C")
 
 
 @app.command()
@@ -253,21 +254,12 @@ def schema() -> None:
         typer.echo(json.dumps(scenario_schema(), indent=2))
 
 
-def _report_unraisable(unraisable: Any) -> None:  # noqa: ANN401 - of a type without a name
-    """Report an exception in a callback of a library, unless it is Ctrl-C, which is not lost."""
-    if unraisable.exc_type is not CtrlC:
-        sys.__unraisablehook__(unraisable)
-
-
 def main() -> None:
     """Run a command of `ffsr-plan`, and exit."""
     if isinstance(sys.stdout, io.TextIOWrapper):  # names of files may hold what it cannot encode
         sys.stdout.reconfigure(errors="backslashreplace")
     try:
-        signal.signal(signal.SIGINT, raise_ctrl_c)
-        sys.unraisablehook = _report_unraisable
+        signal.signal(signal.SIGINT, end_command)
         app()
-    except KeyboardInterrupt:  # while an error was being printed
-        raise SystemExit(INTERRUPTED) from None
     finally:  # the exit status is decided
         signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -12,7 +12,6 @@ import typer
 from rich.console import Console
 
 from ffsr_plan.core.errors import FfsrPlanError, InternalError, PlanningError
-from ffsr_plan.search.interruption import CtrlC
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
@@ -51,18 +50,16 @@ def errors_on_stderr() -> Iterator[None]:
     """
     try:
         yield
-        if CtrlC.raised:  # a library has swallowed it
-            raise CtrlC
     except InternalError as error:
         err_console.print(f"ffsr-plan: {error}", style="red")
         raise typer.Exit(INTERNAL_ERROR) from None
     except FfsrPlanError as error:
         err_console.print(f"ffsr-plan: {error}", style="red")
         raise typer.Exit(1 if isinstance(error, PlanningError) else 2) from None
-    except (KeyboardInterrupt, Exception) as error:
-        if isinstance(error, KeyboardInterrupt) or CtrlC.raised:
-            err_console.print("ffsr-plan: interrupted", style="red")
-            raise typer.Exit(INTERRUPTED) from None
+    except KeyboardInterrupt:  # where the search has no plan yet
+        err_console.print("ffsr-plan: interrupted", style="red")
+        raise typer.Exit(INTERRUPTED) from None
+    except Exception as error:
         if isinstance(error, (typer.Exit, typer.Abort, typer.BadParameter, BrokenPipeError)):
             raise  # for Typer
         err_console.print(f"ffsr-plan: {_unexpected(error)}", style="red")

@@ -89,10 +89,10 @@ def write_text(what: str, path: Path, text: str) -> None:
 def write_files(what: str, contents: Mapping[Path, str | bytes]) -> None:
     """Write files, all of them or none, each of them whole or not at all.
 
-    All contents are written under temporary names first; then the files are renamed, which Ctrl-C
-    does not divide. Two writers of one file never mix: the last one to end wins. A file that is
-    replaced keeps its permissions, and a symbolic link keeps pointing to the file that it names.
-    A stream such as /dev/stdout is written to directly.
+    All contents are written under temporary names first; then the files are renamed. Ctrl-C takes
+    effect when that is done. Two writers of one file never mix: the last one to end wins. A file
+    that is replaced keeps its permissions, and a symbolic link keeps pointing to the file that it
+    names. A stream such as /dev/stdout is written to directly.
 
     Args:
         what: name of the argument in error messages.
@@ -101,31 +101,35 @@ def write_files(what: str, contents: Mapping[Path, str | bytes]) -> None:
     Raises:
         InvalidInput: a file that cannot be written; then none is changed.
     """
-    partials: dict[str, str] = {}
     path = next(iter(contents), Path())
+    partials: dict[str, str] = {}
     try:
-        with ExitStack() as open_files:
-            for path, content in contents.items():
-                data = content.encode() if isinstance(content, str) else content
+        data = {p: c.encode() if isinstance(c, str) else c for p, c in contents.items()}
+        for path in filter(_is_stream, data):
+            path.write_bytes(data[path])
+        with _ctrl_c_deferred(), _removed_at_the_end(partials), ExitStack() as open_files:
+            for path in (p for p in data if not _is_stream(p)):
                 target = os.path.realpath(path)
-                if _is_stream(path):
-                    path.write_bytes(data)
-                    continue
                 name = _partial_name(target)
                 partials[name] = target
-                file = open_files.enter_context(open(name, "xb"))
-                _write(file, data, target)
-            with _ctrl_c_deferred():
-                while partials:
-                    name = next(iter(partials))
-                    path = Path(partials[name])
-                    os.replace(name, path)
-                    del partials[name]
+                _write(open_files.enter_context(open(name, "xb")), data[path], target)
+            while partials:
+                name = next(iter(partials))
+                path = Path(partials[name])
+                os.replace(name, path)
+                del partials[name]
     except (OSError, ValueError) as error:  # an empty name is a ValueError
         allowed = f"a file that can be written ({_reason(error)})"
         raise InvalidInput(what, str(path), allowed) from None
+
+
+@contextmanager
+def _removed_at_the_end(names: Mapping[str, str]) -> Iterator[None]:
+    """Files that are still among `names` after the body are removed."""
+    try:
+        yield
     finally:
-        for name in partials:
+        for name in names:
             with suppress(OSError):
                 os.unlink(name)
 

@@ -60,8 +60,7 @@ def serve(
     if opens:
         open_in_browser(server.url)
     if block:
-        print(f"{server.url} shows the plan until Ctrl-C", flush=True)
-        server.wait()
+        server.wait(f"{server.url} shows the plan until Ctrl-C")
     return server
 
 

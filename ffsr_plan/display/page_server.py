@@ -89,9 +89,15 @@ class PageServer:
         with self._changed:
             return self._changed.wait_for(lambda: self._listeners > 0, timeout)
 
-    def wait(self) -> None:
-        """Wait until the server is stopped, or for Ctrl-C, which stops it."""
+    def wait(self, announcement: str = "") -> None:
+        """Wait until the server is stopped, or for Ctrl-C, which stops it.
+
+        Args:
+            announcement: printed first, if it is not empty.
+        """
         with self, suppress(KeyboardInterrupt):
+            if announcement:
+                print(announcement, flush=True)
             self._stopped.wait()
 
     def stop(self) -> None:

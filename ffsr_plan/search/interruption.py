@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from types import FrameType, TracebackType
-from typing import ClassVar
 
 from ffsr_plan.core.errors import PlanningError
 from ffsr_plan.search.records import SearchRequest
@@ -18,24 +20,16 @@ _PENDING_SECONDS = 2.0
 _ended = -float("inf")  # when the last search ended that Ctrl-C had ended, by `time.monotonic()`
 
 
-class CtrlC(KeyboardInterrupt):
-    """Ctrl-C on the command line.
+def end_command(number: int, frame: FrameType | None) -> None:
+    """The handler of SIGINT on the command line: end at once, with exit status 130.
 
-    After a plain KeyboardInterrupt that passed through code made from a text, such as that of a
-    dataclass, Python ends by SIGINT, whatever exit status is asked for; not after a subclass.
-
-    Attributes:
-        raised: whether it was ever raised; a library that is being loaded may turn it into another
-            exception.
+    An exception would be raised wherever the program happens to be. A library that is being loaded
+    may turn it into another one, drop it, or abort the process.
     """
-
-    raised: ClassVar[bool] = False
-
-
-def raise_ctrl_c(number: int, frame: FrameType | None) -> None:
-    """A handler of SIGINT that raises `CtrlC`."""
-    CtrlC.raised = True
-    raise CtrlC
+    cursor = b"\x1b[?25h\r\x1b[K" if sys.__stderr__ and sys.__stderr__.isatty() else b""
+    with suppress(OSError):
+        os.write(2, cursor + b"ffsr-plan: interrupted\n")
+    os._exit(128 + number)
 
 
 class Interruption:
@@ -47,7 +41,7 @@ class Interruption:
     KeyboardInterrupt: a loop over plans ends.
 
     Only the main thread receives Ctrl-C, and only if the handler of SIGINT is Python's own or
-    `raise_ctrl_c`.
+    `end_command`, which is called where this class would raise.
 
     Attributes:
         pressed: whether Ctrl-C was pressed.
@@ -67,7 +61,7 @@ class Interruption:
         """The search begins: from now on there may be a plan to return."""
         self._searching = self._returns
         if self.pressed:
-            raise self._error()
+            raise KeyboardInterrupt
 
     def received_by(self, request: SearchRequest) -> SearchRequest:
         """A request whose search Ctrl-C ends.
@@ -82,9 +76,6 @@ class Interruption:
         if self._handler is not None and (again or not self._searching):
             self._handler(number, frame)
 
-    def _error(self) -> KeyboardInterrupt:
-        return CtrlC() if self._handler is raise_ctrl_c else KeyboardInterrupt()
-
     def __enter__(self) -> Interruption:
         global _ended
         if threading.current_thread() is not threading.main_thread():
@@ -93,7 +84,7 @@ class Interruption:
             _ended = -float("inf")
             raise KeyboardInterrupt("Ctrl-C ended the search before this one")
         installed = signal.getsignal(signal.SIGINT)
-        for handler in (signal.default_int_handler, raise_ctrl_c):
+        for handler in (signal.default_int_handler, end_command):
             if installed is handler:
                 self._handler = handler
                 signal.signal(signal.SIGINT, self._receive)
@@ -108,6 +99,6 @@ class Interruption:
         if not self.pressed:
             return
         if isinstance(error, PlanningError) or (error is None and not self._returns):
-            raise self._error() from error  # there is no plan to return, or it is not asked for
+            raise KeyboardInterrupt from error  # there is no plan to return, or it is not asked for
         if error is None:
             _ended = time.monotonic()

@@ -79,11 +79,12 @@ def stopped(folder, number, scenario, moment):
     process = begun(folder, "plan", scenario, "--seed", "5", *OPTIONS)
     time.sleep(moment)
     process.send_signal(number)
-    status = ended(process)
-    plan, title = generation(results)
-    for name, content in before.items():
-        (results / name).write_bytes(content)
-    return status, plan, title
+    try:
+        status = ended(process)
+        return status, *generation(results)
+    finally:
+        for name, content in before.items():
+            (results / name).write_bytes(content)
 
 
 def at_all_moments(folders, number, scenario, count, seed):

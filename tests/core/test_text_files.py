@@ -169,6 +169,21 @@ def test_ctrl_c_does_not_divide_a_set_of_files(tmp_path, monkeypatch):
     assert names(tmp_path) == ["a", "b", "c"]
 
 
+def test_ctrl_c_while_a_file_is_written_leaves_no_part_of_it(tmp_path, monkeypatch):
+    def interrupted(*arguments, write=text_files._write):
+        signal.raise_signal(signal.SIGINT)
+        write(*arguments)
+
+    monkeypatch.setattr(text_files, "_write", interrupted)
+    handler = signal.signal(signal.SIGINT, lambda *_: ended.append(names(tmp_path)))
+    ended: list[list[str]] = []
+    try:
+        write_files("path", {tmp_path / name: name for name in "ab"})
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    assert ended == [["a", "b"]]
+
+
 def test_unreadable_files_are_named(tmp_path):
     (tmp_path / "latin.txt").write_bytes(b"\xff")
     for name, reason in (("none.txt", "No such file"), ("latin.txt", "utf-8")):
