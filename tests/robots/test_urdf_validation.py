@@ -129,6 +129,28 @@ def test_a_limit_without_effort_or_velocity_is_refused_by_joint(kind, key, value
         robot_from_urdf(wrong, "made")
 
 
+@pytest.mark.parametrize(
+    ("part", "message"),
+    [
+        ("<axis xyz='foo'/>", "joint 'j', axis: got 'foo'"),
+        ("<axis xyz='0 0 nan'/>", "joint 'j', axis: got '0 0 nan'"),
+        ("<mimic joint='k' multiplier='x'/>", "joint 'j', mimic multiplier: got 'x'"),
+        ("<dynamics damping='x'/>", "joint 'j', dynamics, damping: got 'x'"),
+    ],
+)
+def test_wrong_numbers_of_a_fixed_joint_are_refused_although_they_mean_nothing(part, message):
+    joint = f"<joint name='j' type='fixed'><parent link='base'/><child link='a'/>{part}</joint>"
+    with pytest.raises(fp.InvalidInput, match=f"made, {message}"):
+        robot_from_urdf(urdf(body("base"), body("a"), joint), "made")
+
+
+@pytest.mark.parametrize("axis", ["0 0 0", "0 0 2", "0 0 1"])
+def test_any_axis_of_a_fixed_joint_is_left_out(axis):
+    parts = f"<parent link='base'/><child link='a'/><axis xyz='{axis}'/><mimic joint='k'/>"
+    text = urdf(body("base"), body("a"), f"<joint name='j' type='fixed'>{parts}</joint>")
+    assert robot_from_urdf(text, "made").model.nq == 7
+
+
 def test_trees_too_deep_or_too_large_for_pinocchio_are_refused():
     with pytest.raises(fp.InvalidInput, match=r"501 joints in a row.*at most 500"):
         read_urdf(chain(502), "made")

@@ -57,11 +57,12 @@ def canonical_joint(joint: ElementTree.Element, where: str) -> ElementTree.Eleme
         check_element(end, f"{where}, {key}")
         ElementTree.SubElement(copy, key, link=str(end.get("link")))
     limit = _limit(joint, kind, where)
-    if kind != "fixed":
-        _add_axis(copy, joint, where)
-        copy.extend([] if limit is None else [limit])
-        _add_mimic(copy, joint, where)
-        _add_dynamics(copy, joint, where)
+    # what a fixed joint says of its motion is read, for wrong numbers in it, and then left out
+    moving = copy if kind != "fixed" else ElementTree.Element("joint")
+    _add_axis(moving, joint, where, any_length=kind == "fixed")
+    moving.extend([] if limit is None else [limit])
+    _add_mimic(moving, joint, where)
+    _add_dynamics(moving, joint, where)
     copy.extend(part for part in joint if is_comment(part))
     return copy
 
@@ -102,7 +103,9 @@ def check_ranges(robot: ElementTree.Element, where: str) -> None:
             raise InvalidInput(f"{about}, limit", [lower, upper], "lower less than upper")
 
 
-def _add_axis(copy: ElementTree.Element, joint: ElementTree.Element, where: str) -> None:
+def _add_axis(
+    copy: ElementTree.Element, joint: ElementTree.Element, where: str, any_length: bool
+) -> None:
     axis = joint.find("axis")
     if axis is None:
         ElementTree.SubElement(copy, "axis", xyz="1 0 0")
@@ -111,9 +114,9 @@ def _add_axis(copy: ElementTree.Element, joint: ElementTree.Element, where: str)
     with placed_errors(axis):
         values = numbers(f"{where}, axis", axis.get("xyz"), 3)
         norm = math.hypot(*values)
-        if abs(norm - 1.0) > 1e-3:
+        if abs(norm - 1.0) > 1e-3 and not any_length:
             raise InvalidInput(f"{where}, axis", values, "a vector of length 1")
-    if abs(norm - 1.0) > 1e-15:  # else a second reading might change the last digit
+    if abs(norm - 1.0) > 1e-15 and norm > 0.0:  # else a second reading might change the last digit
         values = (np.array(values) / norm).tolist()
     ElementTree.SubElement(copy, "axis", xyz=attribute_text(values))
 
