@@ -34,6 +34,7 @@ class Certificate(NamedTuple):
         node_queries: Coal queries for the clearances of nodes, one a configuration over all pairs.
         edge_queries: Coal queries for all proofs, obstacles and self-collision together.
         least_clearance: proven lower bound on the clearance along the whole returned motion [m].
+        unchecked_links: links of the robot without a collision shape, for which nothing is proven.
     """
 
     edges_free: int
@@ -41,8 +42,9 @@ class Certificate(NamedTuple):
     node_queries: int
     edge_queries: int
     least_clearance: float
+    unchecked_links: tuple[str, ...]
 
     @property
     def counts(self) -> Counts:
-        """The certificate without the clearance."""
+        """The counts alone."""
         return Counts(*self[:4])

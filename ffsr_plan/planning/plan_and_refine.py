@@ -119,7 +119,7 @@ def refine(plan: Plan) -> Plan:
         length=refined.length,
         objective=refined.objective,
         clearances=refined.clearances,
-        certificate=Certificate(*counts, least),
+        certificate=Certificate(*counts, least, plan.problem.robot.unchecked_links),
     )
 
 

@@ -64,7 +64,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
         },
         "trails": {k: v.tolist() for k, v in plan.trails._asdict().items()},
         "certificate": {
-            **plan.certificate._asdict(),
+            **plan.certificate.counts._asdict(),
             "least_clearance": _without_infinity(np.array([plan.certificate.least_clearance]))[0],
         },
         "interrupted": plan.interrupted,

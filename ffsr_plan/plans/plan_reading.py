@@ -67,7 +67,7 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
         trails=Trails(*(getattr(table.trails, name) for name in Trails._fields)),
         certificate=Certificate(
             counts.edges_free, counts.edges_refused, counts.node_queries, counts.edge_queries,
-            np.inf if least is None else least,
+            np.inf if least is None else least, problem.robot.unchecked_links,
         ),
         interrupted=table.interrupted,
         seconds=table.seconds,

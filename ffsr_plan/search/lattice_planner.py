@@ -110,7 +110,7 @@ class LatticePlanner(ABC):
             clearances=frozen(clearances),
             history=result.history,
             trails=result.trails,
-            certificate=Certificate(*counts, least),
+            certificate=Certificate(*counts, least, problem.robot.unchecked_links),
             interrupted=result.interrupted,
         )
 

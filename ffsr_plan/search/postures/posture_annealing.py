@@ -171,7 +171,9 @@ class _Proofs:
         m, before = len(path) - 1, proof.prover.queries
         least = proof.prover.least_clearance(np.zeros((m + 1, 3)), proof.clearances)
         queries = self._queries + proof.prover.queries - before
-        certificate = Certificate(m, self._refused, m + 1, queries - m - 1, least)
+        certificate = Certificate(
+            m, self._refused, m + 1, queries - m - 1, least, problem.robot.unchecked_links
+        )
         solution = _solution(self._lattice, path, proof, certificate, result, on_lattice)
         if not proof.holds:
             wanted = float(angle_between(problem.start[3:7], problem.goal[3:7]))
