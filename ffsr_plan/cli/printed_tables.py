@@ -76,7 +76,7 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
         least, bound = report.least_clearance, report.clearance_bound
         yield "  least clearance", f"{least:.6f} m measured, at least {bound:.6f} m between samples"
     if np.isfinite(report.least_self_separation):
-        yield "  least link-to-link", f"{report.least_self_separation:.6f} m"
+        yield "  least link-to-link", f"{report.least_self_separation:.6f} m measured"
     if report.momentum_residual is not None:
         yield "  momentum residual", f"{report.momentum_residual:.1e} relative"
     if report.center_drift is not None:

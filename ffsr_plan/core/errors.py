@@ -60,6 +60,10 @@ class UncheckedLinks(UserWarning):
     """A robot has links with mass but no shape, which nothing keeps clear of obstacles."""
 
 
+class GoalPoseIgnored(UserWarning):
+    """The goal's base pose is not demanded in this mode, and the plan ends at another one."""
+
+
 class PlanningError(FfsrPlanError):
     """The input is valid, but no plan exists or none was found."""
 

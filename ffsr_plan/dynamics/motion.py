@@ -16,6 +16,8 @@ import numpy as np
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.checks import finite_array
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction
@@ -56,8 +58,21 @@ class Motion:
             positions: (m + 1, 3) base origin at the corners, world [m].
             joint_values: (m + 1, nd) at the corners; without them the joints move steadily from
                 start to goal, continuous ones the shorter way round.
+
+        Raises:
+            InvalidInput: an argument of another kind, shape or size, or not finite.
         """
-        self.robot, self.mode = robot, Mode(mode)
+        if not isinstance(robot, SpaceRobot):
+            raise InvalidInput("robot", robot, "a SpaceRobot")
+        self.robot, self.mode = robot, Mode.parse("mode", mode)
+        start = robot.check_configuration("start", start)
+        goal = robot.check_configuration("goal", goal)
+        positions = finite_array("positions", positions, (-1, 3))
+        if len(positions) < 2:
+            raise InvalidInput("positions", positions.tolist(), "at least two, for one edge")
+        if joint_values is not None:
+            shape = (len(positions), robot.nd)
+            joint_values = finite_array("joint_values", joint_values, shape)
         self._start, self._goal = start[3:7], goal[3:7]
         self._origin = start[:3]
         self._progress = np.arange(len(positions)) / (len(positions) - 1)
@@ -65,8 +80,8 @@ class Motion:
         if joint_values is None:
             travel = robot.joint_change(start, goal)
             joint_values = robot.joint_values(start) + self._progress[:, None] * travel
-        self.joint_values = frozen(np.array(joint_values, dtype=np.float64))
-        self.positions = frozen(np.array(positions, dtype=np.float64))
+        self.joint_values = frozen(np.asarray(joint_values, dtype=np.float64))
+        self.positions = positions
         self.attitudes = frozen(self.attitudes_at(self._progress))
         if self.mode.floats:
             self.positions = frozen(self._afloat(self.attitudes, self.joint_values))

@@ -250,7 +250,8 @@ class Roadmap:
             if not onwards:
                 contacts = self._closing(layer)
                 spheres = sorted({c.obstacle for c in contacts if isinstance(c.obstacle, int)})
-                advice = against_obstacles(self.problem)
+                ends = (self.nodes.bounds[0, origin], self.nodes.bounds[m, origin])
+                advice = against_obstacles(self.problem, (float(ends[0]), float(ends[1])))
                 return NoPath(layer + 1, tuple(spheres), m, contacts, advice)
             reached = onwards
         return None

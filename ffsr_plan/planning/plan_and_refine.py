@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 from dataclasses import replace
 from functools import partial
 from typing import Literal
@@ -11,7 +12,8 @@ from typing import Literal
 import numpy as np
 
 from ffsr_plan.core.checks import number, one_of, truth, whole_number
-from ffsr_plan.core.errors import AttitudeOutOfReach, InvalidInput
+from ffsr_plan.core.errors import AttitudeOutOfReach, GoalPoseIgnored, InvalidInput
+from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.plans.planner_registry import Planner, planner_of
@@ -22,6 +24,10 @@ from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
 from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
 
+_NOTABLE = 1e-4  # [rad] or [m]
+_HOW_TO_REACH_IT = (
+    "attitude-held holds both, and reach_attitude on a lattice with posture axes the attitude"
+)
 _MOST_WORKERS = 256  # each is a process of some hundred megabytes
 
 
@@ -82,7 +88,9 @@ def plan(
         raise
     if interruption.pressed:
         solution = solution._replace(interrupted=True)
-    return certified(solution)
+    made = certified(solution)
+    _warn_of_ignored_goal(made)
+    return made
 
 
 def refine(plan: Plan) -> Plan:
@@ -170,6 +178,24 @@ def _certified(
         seconds=time.perf_counter() - begin,
         **solution._asdict(),
     )
+
+
+def _warn_of_ignored_goal(plan: Plan) -> None:
+    """Warn where the goal has a base pose, not that of the start, which the mode does not reach."""
+    problem, arrival = plan.problem, plan.motion.configurations()[-1]
+    start, goal, mode = problem.start, problem.goal, problem.mode
+    missed = []
+    if mode.attitude_reacts and not problem.reach_attitude:
+        angle = angle_between(np.stack([arrival[3:7], start[3:7]]), goal[3:7])
+        if angle.min() > _NOTABLE:
+            missed.append(f"attitude is not demanded, and missed by {angle[0]:.3g} rad")
+    if mode.floats:
+        distance = np.linalg.norm(np.stack([arrival[:3], start[:3]]) - goal[:3], axis=1)
+        if distance.min() > _NOTABLE:
+            missed.append(f"position is not demanded, and missed by {distance[0]:.3g} m")
+    if missed:
+        text = f"in the mode {mode} the goal's base {', its base '.join(missed)}"
+        warnings.warn(f"{text}; {_HOW_TO_REACH_IT}", GoalPoseIgnored, stacklevel=3)
 
 
 def _generator(seed: int | np.random.Generator) -> tuple[np.random.Generator, int | None]:

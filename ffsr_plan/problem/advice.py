@@ -10,12 +10,21 @@ from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
 from ffsr_plan.problem.problem import Problem
 
 
-def against_obstacles(problem: Problem) -> tuple[str, ...]:
+def against_obstacles(problem: Problem, ends: tuple[float, float]) -> tuple[str, ...]:
     """What may help where obstacles close a lattice without posture axes.
 
     Args:
         problem: gives the lattice and the mode.
+        ends: clearances at start and goal [m].
     """
+    near = [
+        f"a {name} with more clearance than the tolerance of {problem.tolerance:g} m, below which "
+        f"nothing can be proven: it has {clearance:.3g} m"
+        for name, clearance in zip(("start", "goal"), ends, strict=True)
+        if clearance <= problem.tolerance
+    ]
+    if near:
+        return tuple(near)
     advice = [*_offsets(problem)]
     if problem.lattice.axes:
         advice.append(f"more than {problem.lattice.divisions} divisions")

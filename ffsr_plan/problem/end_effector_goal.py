@@ -197,7 +197,7 @@ def _explained(error: PoseOutOfReach, target: PoseTarget) -> PoseOutOfReach:
         without = any(missed < POSE_TOLERANCE for missed, _ in descents)
     advice = ["leave out the attitude: the position alone is reached"] if without else []
     if held is None:
-        advice.append("a base_position nearer to the pose, or another base_attitude")
+        advice.append(f"{_better_place(target)}, or another base_attitude")
     elif held.reached:
         place = "" if target.mode.floats else " or base_position"
         advice += [
@@ -206,8 +206,7 @@ def _explained(error: PoseOutOfReach, target: PoseTarget) -> PoseOutOfReach:
             "another seed",
         ]
     else:
-        place = "a start" if target.mode.floats else "a base_position"
-        advice.append(f"{place} nearer to the pose")
+        advice.append(_better_place(target))
     return PoseOutOfReach(
         error.frame,
         error.position_missed,
@@ -235,6 +234,30 @@ def _of_held_base(target: PoseTarget) -> HeldBase:
         held = target._replace(mode=Mode.ATTITUDE_HELD, base_quat=quat)
         missed = float(np.linalg.norm(pose_error(held, _Descent(held).end(least))[:3]))
     return HeldBase(bool(reached), rotation, missed)
+
+
+def _better_place(target: PoseTarget) -> str:
+    """Where the base should be instead, from how closely a held base reaches the pose from there.
+
+    The pose may be too far from the base, or too close to it.
+    """
+    quat = target.start[3:7] if target.mode.attitude_reacts else target.base_quat
+    held = target._replace(mode=Mode.ATTITUDE_HELD, base_quat=quat)
+    least = _least_error(held)
+    away = target.base_position - target.position
+    distance = float(np.linalg.norm(away))
+    what, found = "another start" if target.mode.floats else "another base_position", ""
+    for words, sign in (("farther from", 1.0), ("nearer to", -1.0)):
+        step = sign * min(least, 0.9 * distance) / max(distance, 1e-9)
+        moved = held._replace(base_position=target.base_position + step * away)
+        missed = _least_error(moved)
+        if missed < 0.9 * least:
+            least, found = missed, f", {words} the pose"
+    return what + found
+
+
+def _least_error(target: PoseTarget) -> float:
+    return min(error for error, _ in _descents(_Descent(target)))
 
 
 def _descents(descent: _Descent) -> list[tuple[float, Array]]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ffsr_plan.core.cost_estimate import check_memory, check_work
+from ffsr_plan.core.cost_estimate import MOST_BYTES, check_memory, check_work
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.problem.problem import Problem
 
@@ -62,6 +62,8 @@ def check_lattice(problem: Problem, bytes_per_edge: float = 1.0, ants: int = 0) 
 def check_colonies(problem: Problem, colonies: int) -> None:
     """Raise `InvalidInput` if the results of so many colonies would take too much memory.
 
+    A lattice that is too large for one colony is another matter: its own check names it.
+
     Args:
         problem: gives the lattice.
         colonies: number of independent colonies, whose results are compared at the end.
@@ -71,4 +73,5 @@ def check_colonies(problem: Problem, colonies: int) -> None:
     edges = lattice.divisions * math.prod(2 * axis.half_count + 1 for axis in axes) ** 2
     of_path = (_BYTES_PER_LAYER if lattice.postures else 8) * lattice.divisions
     each = _BYTES_PER_COLONY + of_path + _BYTES_PER_TRAIL * min(edges, _MOST_TRAILS)
-    check_memory("colonies", {"colonies": colonies}, each, "fewer colonies")
+    if each <= MOST_BYTES:
+        check_memory("colonies", {"colonies": colonies}, each, "fewer colonies")

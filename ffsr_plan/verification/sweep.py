@@ -32,6 +32,7 @@ CONFIRMED = 1e-6
 """The plan's proven clearance is confirmed up to this much [m]."""
 _VALUES_AT_ONCE = 1_000_000  # distances in one block of samples
 _SAMPLES_AT_ONCE = 2048
+_MEASURED_AT_ONCE = 256  # distances of links, to find the least one
 _TURN_ROUNDING = 1e-9  # [rad]
 
 OnProgress = Callable[[float], object]
@@ -56,8 +57,7 @@ class Swept:
 
     Attributes:
         clearance: least measured distance of a link to an obstacle; None without any.
-        separation: least lower bound on the distance of two links that must not touch; None without
-            any.
+        separation: least measured distance of two links that must not touch; None without any.
         clearance_bound: lower bound on the clearance at and between all samples [m].
         hidden: where two samples may hide a contact, and the travel between them: with an obstacle
             first, of two links second; None where nothing can be hidden.
@@ -223,13 +223,24 @@ class _Sweep:
         """Distances; the least ones are noted."""
         stretch = edge[which] - self._first_edge
         values = self.distances.at(samples, which, part, stretch, enough)
-        outer = part < self.distances.shapes
-        for flags, name in ((outer, "clearance"), (~outer, "separation")):
-            before: Place | None = getattr(self.found, name)
-            if flags.any():
-                k = int(np.flatnonzero(flags)[np.argmin(values[flags])])
-                if before is None or values[k] < before.value:
-                    setattr(self.found, name, self._place(values[k], edge[which[k]], part[k]))
+        outer, found = part < self.distances.shapes, self.found
+        if outer.any():
+            k = int(np.flatnonzero(outer)[np.argmin(values[outer])])
+            if found.clearance is None or values[k] < found.clearance.value:
+                found.clearance = self._place(values[k], edge[which[k]], part[k])
+        inner = np.flatnonzero(~outer)
+        inner = inner[np.argsort(values[inner], kind="stable")]
+        for begin in range(0, len(inner), _MEASURED_AT_ONCE):  # values are bounds here
+            some = inner[begin : begin + _MEASURED_AT_ONCE]
+            if found.separation is not None:
+                some = some[values[some] < found.separation.value]
+            if not len(some):
+                break
+            far = np.full(len(some), np.inf)
+            exact = self.distances.at(samples, which[some], part[some], stretch[some], far)
+            k = int(np.argmin(exact))
+            if found.separation is None or exact[k] < found.separation.value:
+                found.separation = self._place(exact[k], edge[which[some[k]]], part[some[k]])
         return values
 
     def _place(self, value: float, edge: int, part: int) -> Place:

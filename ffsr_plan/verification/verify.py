@@ -54,8 +54,7 @@ class Report:
             centre of a sphere inside it, a lower bound.
         clearance_bound: lower bound on that distance all along the motion, between the samples too,
             from bounds on the travel of all points [m].
-        least_self_separation: least lower bound on the distance of links that must not touch, over
-            all samples [m].
+        least_self_separation: least distance of links that must not touch, over all samples [m].
         momentum_residual: largest norm of the angular momentum about the centre of mass, relative
             to the sum of the bodies' own terms; None if wheels hold the attitude.
         center_drift: largest distance of the centre of mass from its initial position over all

@@ -37,7 +37,7 @@ def no_browser(monkeypatch):
         raise webbrowser.Error
 
     monkeypatch.setattr(webbrowser, "get", none)
-    monkeypatch.setattr(PageServer, "wait", PageServer.stop)
+    monkeypatch.setattr(PageServer, "wait", lambda server, _="": server.stop())
 
 
 @pytest.mark.parametrize("page", with_blocks("python"))

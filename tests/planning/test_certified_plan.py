@@ -1,5 +1,7 @@
 """Plans: figures of merit, the continuous motion, the paper's experiment."""
 
+import warnings
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -143,3 +145,28 @@ def test_a_gap_exists_where_nothing_counts_as_length(robot):
     plan = fp.plan(problem)
     assert plan.gap == 0.0
     assert plan.length == 0.0
+
+
+def test_a_goal_pose_that_the_mode_does_not_lead_to_is_told(robot):
+    """The start's pose counts as none given, and a goal of inverse kinematics is reached."""
+    lattice, joints = fp.Lattice(4), {"left_1": 0.9}
+    start = robot.configuration()
+    turned = robot.configuration((1.0, 0.0, 0.0), (1.0, 0.0, 0.0), joints)
+    flying = fp.Problem(robot, fp.Scene(), start, turned, lattice=lattice)
+    with pytest.warns(fp.GoalPoseIgnored) as told:
+        plan = fp.plan(flying)
+    angle = rotations.angle_between(plan.motion.attitudes[-1], turned[3:7])
+    assert f"attitude is not demanded, and missed by {angle:.3g} rad;" in str(told[0].message)
+    afloat = fp.Problem(robot, fp.Scene(), start, turned, "free-floating", lattice)
+    with pytest.warns(fp.GoalPoseIgnored, match=r"attitude is .*, its base position is not"):
+        fp.plan(afloat)
+    quiet = [
+        fp.Problem(robot, fp.Scene(), start, turned, "attitude-held", lattice),
+        fp.Problem(robot, fp.Scene(), start, plan.motion.configurations()[-1], lattice=lattice),
+        fp.Problem(robot, fp.Scene(), start, robot.configuration((1, 0, 0), joints=joints)),
+        afloat.reaching("left_3", (0.5, 0.9, 0.0)),
+    ]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for problem in quiet:
+            fp.plan(problem, "lattice-optimum")

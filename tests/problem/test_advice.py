@@ -33,6 +33,19 @@ def test_a_closed_lattice_names_its_axes_and_those_it_lacks(robot):
     assert "wall.stl (spheres " in str(error)
 
 
+def test_an_end_within_the_tolerance_of_an_obstacle_is_the_cause_and_nothing_else(point):
+    """Its clearance grows on the way, but nothing can be proven at its beginning."""
+    radius = point.collision_model.geometryObjects[0].geometry.radius
+    scene = fp.Scene([[0.0, -1.0, 0.0]], [1.0 - radius - 1e-9])
+    start, goal = point.configuration(), point.configuration((4.0, 0.0, 0.0))
+    lattice = fp.Lattice(10, fp.Axis(2, 0.3))
+    for ends, name in (((start, goal), "start"), ((goal, start), "goal")):
+        error = refused(fp.Problem(point, scene, *ends, lattice=lattice))
+        (advice,) = error.advice
+        assert advice.startswith(f"a {name} with more clearance than the tolerance of 0.0001 m")
+        assert "it has 1e-09 m" in advice
+
+
 def test_a_robot_without_joints_is_not_told_of_postures(point):
     goal = point.configuration((4.0, 0.0, 0.0))
     problem = fp.Problem(point, WALL, point.configuration(), goal, lattice=fp.Lattice(8))

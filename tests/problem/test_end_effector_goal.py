@@ -298,3 +298,26 @@ def test_a_wrong_argument_is_named(robot, wrong, message):
 def test_a_robot_without_joints_has_nothing_to_solve_for(point):
     with pytest.raises(fp.InvalidInput, match="a robot with joints"):
         fp.inverse_kinematics(point, None, "base", (1, 0, 0), start=point.neutral())
+
+
+@pytest.mark.parametrize(("ahead", "words"), [(2.5, "nearer to"), (SHOULDER, "farther from")])
+@pytest.mark.parametrize("mode", ["attitude-held", "free-flying", "free-floating"])
+def test_a_pose_that_is_too_far_or_too_close_is_told_apart(mode, ahead, words):
+    robot = planar_arm(1e4)
+    with pytest.raises(fp.PoseOutOfReach) as raised:
+        fp.inverse_kinematics(
+            robot, None, "tool", (ahead, 0.0, 0.0), start=robot.neutral(), mode=mode
+        )
+    what = "another start" if mode == "free-floating" else "another base_position"
+    assert raised.value.advice[-1].startswith(f"{what}, {words} the pose")
+
+
+def test_a_pose_that_no_place_of_the_base_brings_closer_is_not_said_to_be_far():
+    """The frame's attitude is out of the arm's plane."""
+    robot = planar_arm(1e4)
+    with pytest.raises(fp.PoseOutOfReach) as raised:
+        fp.inverse_kinematics(
+            robot, None, "tool", (1.2, 0.2, 0.0), (0.0, 1.0, 0.0), start=robot.neutral(),
+            mode="attitude-held",
+        )  # fmt: skip
+    assert "the pose" not in raised.value.advice[-1]

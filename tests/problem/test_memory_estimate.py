@@ -98,6 +98,7 @@ HUGE = [
     ({"divisions": 10**6}, r"layers 1000001 x nodes 1 x .* GB; allowed: at most 2 GB"),
     ({"divisions": 40, "axes": (1000,)}, r"layers 41 x nodes 2001 x nodes of the next layer 2001"),
     ({"divisions": 2, "axes": (10**8, 10**8)}, r"EB; allowed"),
+    ({"divisions": 10**9, "axes": (5, 5)}, r"^lattice: got layers 1000000001 x"),
     ({"divisions": 4, "postures": [TWO] * 20}, r"lattice postures: got layers 5 x postures 1\.2"),
     ({"divisions": 4, "postures": [TWO] * 40}, r"lattice postures"),
 ]
@@ -119,6 +120,9 @@ def test_many_colonies_are_refused_by_their_results(robot):
         fp.plan(given, colonies=10**9)
     with pytest.raises(fp.InvalidInput, match=r"workers.*at most 256"):
         fp.plan(given, workers=10**6)
+    huge = problem(robot, 10**9, (5, 5))
+    with pytest.raises(fp.InvalidInput, match=r"^lattice: got layers"):
+        fp.plan(huge, colonies=2)
 
 
 def test_work_that_nothing_can_cut_short_is_refused(robot, monkeypatch):

@@ -111,6 +111,8 @@ def calls(plan, tmp_path_factory):
         fp.momentum.attitude_rate_map: {"robot": robot, "q": q},
         fp.momentum.generalized_jacobian: {"robot": robot, "q": q, "frame": "left_3"},
         fp.LayeredLattice: {"problem": problem},
+        fp.Motion: {"robot": robot, "mode": "free-flying", "start": q, "goal": problem.goal,
+                    "positions": np.zeros((3, 3)), "joint_values": np.zeros((3, robot.nd))},
         fp.Roadmap: {"problem": problem},
         fp.LiveView: {"problem": problem, **view, "pace": 0.0, "title": "t"},
         robot.configuration: {"position": [0, 0, 0], "attitude": [0, 0, 0], "joints": {}},

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import frozen
 from ffsr_plan.robots.loading import robot_from_urdf
@@ -22,7 +23,21 @@ def test_full_verification_of_one_plan(fig2a_plan):
     assert report.clearance_bound <= report.least_clearance
     assert report.clearance_error < 1e-12
     assert report.objective_error < 1e-12
-    assert report.least_self_separation > 0.0
+
+
+@pytest.mark.parametrize("name", ["fig2a", "fig2b", "inspection", "gate"])
+def test_the_least_distance_of_links_is_that_of_coal_over_the_same_samples(name):
+    problem = fp.load_scenario(name)
+    settings = {} if problem.lattice.postures else {"planner": "lattice-optimum", "refine": False}
+    plan = fp.plan(problem, **settings)
+    report, m = plan.verify(20), problem.lattice.divisions
+    edges, times = np.repeat(np.arange(m), 21), np.tile(np.arange(21) / 20.0, m)
+    query = SelfQuery(problem.robot)
+    least = min(query.distance(q) for q in plan.motion.at(edges, times))
+    assert report.samples >= 20 * m + 1
+    assert least - 5e-3 < report.least_self_separation < least + 1e-7
+    if report.samples == 20 * m + 1:
+        assert report.least_self_separation == pytest.approx(least, abs=1e-7)
 
 
 def moved(plan, **changes):
