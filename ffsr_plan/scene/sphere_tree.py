@@ -45,7 +45,9 @@ def sphere_tree(centers: Array, radii: Array) -> SphereTree:
         radii: (N,) their radii [m].
     """
     tree = _tree_of_few(centers, radii) if len(radii) <= _FEW else _tree_of_many(centers, radii)
-    return SphereTree(*map(frozen, tree))
+    for array in tree:
+        frozen(array)
+    return tree
 
 
 def _tree_of_many(centers: Array, radii: Array) -> SphereTree:
