@@ -14,7 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ffsr_plan.collision.nearest_sphere_kernels import STACK_SIZE, nearest_sphere
+from ffsr_plan.collision.nearest_sphere_kernels import (
+    STACK_SIZE,
+    distance_to_sphere,
+    nearest_sphere,
+)
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.core.kernels.compilation import kernel
 
@@ -101,6 +105,8 @@ class Workspace(NamedTuple):
     shift: Array
     stack: NDArray[np.int32]
     bounds: Array
+    found: IntArray
+    """(1,) the nearest sphere of the search before, a row of `Obstacles.spheres`."""
 
 
 class CostedPath(NamedTuple):
@@ -136,7 +142,7 @@ def step_between(indices: IntArray, tail: int, head: int) -> int:
 def new_workspace() -> Workspace:
     """Workspace to work in, for one thread."""
     stack, bounds = np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE)
-    return Workspace(np.empty(15), np.zeros(3), stack, bounds)
+    return Workspace(np.empty(15), np.zeros(3), stack, bounds, np.zeros(1, np.int64))
 
 
 @kernel
@@ -170,7 +176,7 @@ def clearance_at(
         (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
         (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
     )
-    frame, least, nearest = workspace.frame, np.inf, -1
+    frame, least, nearest = workspace.frame, np.inf, workspace.found[0]
     for g in range(len(frames)):
         own = frames[g]
         for a in range(3):
@@ -183,9 +189,12 @@ def clearance_at(
             )
             frame[12 + a] = own[12 + a]
         kind, shift = obstacles.kinds[g], workspace.shift
+        # a sphere that was near gives a small distance to start with
+        least = min(least, distance_to_sphere(kind, frame, shift, obstacles.spheres, nearest))
         least, nearest = nearest_sphere(
             obstacles, kind, frame, shift, least, nearest, workspace.stack, workspace.bounds
         )
+    workspace.found[0] = nearest
     return least
 
 
