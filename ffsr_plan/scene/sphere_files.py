@@ -1,7 +1,7 @@
 """Files of spheres: CSV tables of x, y, z, radius, and NumPy arrays.
 
-CSV is parsed here rather than by `numpy.loadtxt`, because that function knows no units in a header
-and does not name the line and column of a wrong value.
+`numpy.loadtxt` reads the lines of a CSV table that hold plain numbers. It knows no units in a
+header and does not name the line and column of a wrong value: the other lines are parsed here.
 """
 
 from __future__ import annotations
@@ -9,9 +9,10 @@ from __future__ import annotations
 import csv
 import math
 import re
+import warnings
 import zipfile
 from pathlib import Path
-from typing import IO
+from typing import IO, NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,7 @@ UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3}
 BYTES_PER_SPHERE = 800
 """Memory [bytes] that a sphere takes at most while its file is read and its tree is built."""
 _LONGEST_LINE = 10_000
+_LINES_AT_ONCE = 10_000  # of which one that is no plain number slows down the reading
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _LONGEST_HEADER = 100
 _HEADER = re.compile(r"\s*(\w+)\s*(?:\[\s*(\w+)\s*\])?\s*")
@@ -54,25 +56,89 @@ def read_csv(path: str | Path) -> tuple[Array, Array]:
             allowed = f"at most {_LONGEST_LINE} characters"
             raise InvalidInput(f"{what}, line {line}", f"{len(text)} characters", allowed)
     check_memory(what, {"lines": len(lines)}, BYTES_PER_SPHERE, "fewer spheres")
-    try:
-        numbered = list(enumerate(csv.reader(lines), start=1))
-    except csv.Error as error:
-        raise InvalidInput(what, str(error), "a comma-separated table") from None
-    rows = [(line, row) for line, row in numbered if row and not row[0].lstrip().startswith("#")]
-    rows = [(line, row) for line, row in rows if any(cell.strip() for cell in row)]
-    if not rows:
-        raise InvalidInput(what, "no line", f"a header that names {', '.join(COLUMNS)}")
-    places, scales = _header(what, rows[0][1])
-    values = np.empty((len(rows) - 1, len(COLUMNS)))
-    for k, (line, row) in enumerate(rows[1:]):
-        if len(row) != len(rows[0][1]):
-            raise InvalidInput(
-                f"{what}, line {line}", f"{len(row)} values", f"{len(rows[0][1])}, as in the header"
-            )
-        for c, name in enumerate(COLUMNS):
-            given = row[places[c]].strip()
-            values[k, c] = scales[c] * _number(f"{what}, line {line}, column {name}", name, given)
+    cells, used = _first_row(what, lines)
+    table = _Table(what, len(cells), *_header(what, cells))
+    whole = any('"' in text for text in lines[used:])  # a quoted cell may go on in the next line
+    size = max(1, len(lines) if whole else _LINES_AT_ONCE)
+    parts = [table.values(lines, k, k + size) for k in range(used, len(lines), size)]
+    values = np.concatenate([np.zeros((0, len(COLUMNS))), *parts])
     return values[:, :3], values[:, 3]
+
+
+def _first_row(what: str, lines: list[str]) -> tuple[list[str], int]:
+    """The cells of the first line that is not ignored, and the number of lines up to its end."""
+    reader = csv.reader(lines)
+    try:
+        for row in reader:
+            if not _is_ignored(row):
+                return row, reader.line_num
+    except csv.Error as error:
+        raise _broken(what, error) from None
+    raise InvalidInput(what, "no line", f"a header that names {', '.join(COLUMNS)}")
+
+
+class _Table(NamedTuple):
+    """How the lines below the header are read."""
+
+    what: str
+    width: int
+    places: list[int]
+    scales: list[float]
+
+    def values(self, lines: list[str], begin: int, end: int) -> Array:
+        """(n, 4) x, y, z and radius [m] on the lines `begin` to `end` - 1, counted from 0."""
+        block = lines[begin:end]
+        numbers = _plain_numbers(block, self.width)
+        if numbers is None:
+            return self._values_one_by_one(block, begin + 1)
+        values = numbers[:, self.places] * self.scales
+        if np.all(np.isfinite(values)) and np.all(values[:, 3] > 0.0):
+            return values
+        return self._values_one_by_one(block, begin + 1)
+
+    def _values_one_by_one(self, block: list[str], first: int) -> Array:
+        """The same for lines that hold more than plain numbers, or a mistake, which is named."""
+        reader, values = csv.reader(block), []
+        try:
+            for row in reader:
+                if not _is_ignored(row):
+                    values.append(self._values_of(row, first + reader.line_num - 1))
+        except csv.Error as error:
+            raise _broken(self.what, error) from None
+        return np.array(values, dtype=np.float64).reshape(-1, len(COLUMNS))
+
+    def _values_of(self, row: list[str], line: int) -> list[float]:
+        where = f"{self.what}, line {line}"
+        if len(row) != self.width:
+            raise InvalidInput(where, f"{len(row)} values", f"{self.width}, as in the header")
+        return [
+            scale * _number(f"{where}, column {name}", name, row[place].strip())
+            for name, place, scale in zip(COLUMNS, self.places, self.scales, strict=True)
+        ]
+
+
+def _plain_numbers(block: list[str], width: int) -> Array | None:
+    """(n, width) the numbers on lines that hold nothing else; None if some do.
+
+    NumPy reads the same decimal numbers as `_NUMBER` and in addition nan and infinity, which the
+    caller has to refuse, and skips empty lines likewise.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # such as one of no number at all
+            numbers = np.loadtxt(block, delimiter=",", comments=None, ndmin=2)
+    except (ValueError, UserWarning):
+        return None
+    return numbers if numbers.shape[1] == width else None
+
+
+def _is_ignored(row: list[str]) -> bool:
+    """Whether a line is blank or a comment."""
+    return not any(cell.strip() for cell in row) or row[0].lstrip().startswith("#")
+
+
+def _broken(what: str, error: csv.Error) -> InvalidInput:
+    return InvalidInput(what, str(error), "a comma-separated table")
 
 
 def write_csv(path: str | Path, centers: Array, radii: Array) -> None:

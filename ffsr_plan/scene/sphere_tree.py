@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 
 _SPHERES_PER_LEAF = 4
+_FEW = 20_000  # spheres that take less time without a kernel than its loading or compilation
 
 
 class SphereTree(NamedTuple):
@@ -37,10 +38,29 @@ class SphereTree(NamedTuple):
 def sphere_tree(centers: Array, radii: Array) -> SphereTree:
     """Build the tree: halves along the longest side, down to four spheres per leaf.
 
+    The same spheres give the same tree.
+
     Args:
         centers: (N, 3) centres of the spheres [m].
         radii: (N,) their radii [m].
     """
+    tree = _tree_of_few(centers, radii) if len(radii) <= _FEW else _tree_of_many(centers, radii)
+    for array in tree:
+        frozen(array)
+    return tree
+
+
+def _tree_of_many(centers: Array, radii: Array) -> SphereTree:
+    from ffsr_plan.scene.sphere_tree_kernel import fill_tree
+
+    count = len(radii)
+    spheres, order = np.column_stack([centers, radii]), np.arange(count)
+    nodes, children = np.empty((count, 4)), np.empty((count, 2), dtype=np.int32)
+    used = fill_tree(spheres, order, nodes, children, _SPHERES_PER_LEAF)
+    return SphereTree(nodes[:used].copy(), children[:used].copy(), spheres, order)
+
+
+def _tree_of_few(centers: Array, radii: Array) -> SphereTree:
     order = np.arange(len(radii))
     nodes: list[tuple[float, ...]] = []
     children: list[tuple[int, int]] = []
@@ -64,8 +84,8 @@ def sphere_tree(centers: Array, radii: Array) -> SphereTree:
     if len(radii):
         build(0, len(radii))
     return SphereTree(
-        frozen(np.array(nodes, dtype=np.float64).reshape(-1, 4)),
-        frozen(np.array(children, dtype=np.int32).reshape(-1, 2)),
-        frozen(np.column_stack([centers, radii])[order]),
-        frozen(order),
+        np.array(nodes, dtype=np.float64).reshape(-1, 4),
+        np.array(children, dtype=np.int32).reshape(-1, 2),
+        np.column_stack([centers, radii])[order],
+        order,
     )

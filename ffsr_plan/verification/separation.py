@@ -18,6 +18,7 @@ from ffsr_plan.verification.distances.solid_distance_kernels import (
     pair_distances,
     sphere_distances,
 )
+from ffsr_plan.verification.distances.sphere_blocks import sphere_blocks
 from ffsr_plan.verification.motion_samples import Samples
 from ffsr_plan.verification.solids import Shape
 from ffsr_plan.verification.urdf_reading import Bodies
@@ -56,8 +57,7 @@ class SampledDistances:
         self.names += [(a.link, b.link) for a, b in pairs]
         self.parts = len(self.names)
         self._solids = arrays_of(bodies.shapes)
-        self._centers = np.ascontiguousarray(scene.centers - origin)
-        self._radii = np.ascontiguousarray(scene.radii)
+        self._blocks = sphere_blocks(scene.centers - origin, scene.radii)
         self.stretches(np.zeros(0, dtype=np.int64), np.zeros((0, self.shapes, 3)), np.zeros(0))
 
     def middles(self, samples: Samples) -> Array:
@@ -83,7 +83,7 @@ class SampledDistances:
             reaches[k] += travels[stretch == k][:, :shapes].max(axis=0) + _SPARE
         sizes = np.tile(self._solids.radii[:shapes], count)
         self._near, self._starts = near_spheres(
-            middles.reshape(-1, 3), reaches.ravel(), sizes, self._centers, self._radii
+            middles.reshape(-1, 3), reaches.ravel(), sizes, self._blocks
         )
 
     def at(
@@ -107,7 +107,7 @@ class SampledDistances:
         begin = stretch[outer] * self.shapes + part[outer]
         found[outer] = sphere_distances(
             self._solids, asked[outer], samples.turns, samples.places, samples.base_turns,
-            samples.base_places, self._centers, self._radii, self._near,
+            samples.base_places, self._blocks.centers, self._blocks.radii, self._near,
             np.column_stack([self._starts[begin], self._starts[begin + 1]]),
         )  # fmt: skip
         asked[:, 1] -= self.shapes

@@ -76,11 +76,13 @@ def test_a_refinement_takes_about_the_memory_estimated(robot, divisions, axes, d
 
 
 ONE, TWO = fp.PostureAxis({"left_1": 1.0}, 12, 0.1), fp.PostureAxis({"right_1": 1.0}, 4, 0.1)
+THREE = [fp.PostureAxis({name: 1.0}, 2, 0.1) for name in ("left_1", "right_1", "left_2")]
 LATTICES = [
     (20, (), [ONE], "free-flying"),
     (10, (), [ONE, TWO], "free-floating"),
     (20, (), [ONE, TWO], "attitude-held"),
     (10, (60,), [ONE], "free-flying"),
+    (12, (), THREE, "free-flying"),
 ]
 
 

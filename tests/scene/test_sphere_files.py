@@ -53,6 +53,47 @@ def test_a_mistake_in_a_table_names_file_line_column_and_value(tmp_path, text, m
         fp.Scene.from_csv(written(tmp_path, text))
 
 
+def long_table(count):
+    """Values (count, 4) and the lines of a table of them, which is read in several parts."""
+    values = np.random.default_rng(3).uniform(0.1, 9.0, (count, 4))
+    return values, ["x,y,z,radius", *(",".join(map(repr, row)) for row in values.tolist())]
+
+
+def test_comments_blank_lines_and_quotes_do_not_matter_wherever_they_are(tmp_path):
+    values, lines = long_table(25_000)
+    for place in (25_001, 24_000, 12_000, 10_001, 10_000, 1, 0):
+        lines[place:place] = ["", "# noted", " , ,,"]
+    lines[-4] = ",".join(f' "{cell}"'.strip() for cell in lines[-4].split(","))
+    for text in ("\n".join(lines), "\n".join(lines).replace('"', "")):
+        scene = fp.Scene.from_csv(written(tmp_path, text))
+        assert np.array_equal(scene.centers, values[:, :3])
+        assert np.array_equal(scene.radii, values[:, 3])
+
+
+@pytest.mark.parametrize("line", [2, 9_999, 10_001, 10_002, 25_001])
+@pytest.mark.parametrize(
+    ("mistake", "message"),
+    [
+        ("1,zwei,3,4", r"line {}, column y: got 'zwei'"),
+        ("1,2,nan,4", r"line {}, column z: got 'nan'"),
+        ("1e999,2,3,4", r"line {}, column x: got '1e999'"),
+        ("1,2,3,0", r"line {}, column radius: got '0'"),
+        ("1,2,3,4,5", r"line {}: got '5 values'; allowed: 4"),
+    ],
+    ids=["word", "nan", "overflow", "radius", "width"],
+)
+def test_a_mistake_in_a_long_table_is_named_too(tmp_path, line, mistake, message):
+    _, lines = long_table(25_000)
+    lines[line - 1] = mistake
+    with pytest.raises(fp.InvalidInput, match=message.format(line)):
+        fp.Scene.from_csv(written(tmp_path, "\n".join(lines)))
+
+
+def test_lines_that_all_have_too_many_values_are_refused(tmp_path):
+    with pytest.raises(fp.InvalidInput, match=r"line 2: got '5 values'"):
+        fp.Scene.from_csv(written(tmp_path, "x,y,z,radius\n1,2,3,4,5\n1,2,3,4,5\n"))
+
+
 def test_a_missing_or_unwritable_table_is_named(tmp_path):
     with pytest.raises(fp.InvalidInput, match=r"nowhere\.csv.*No such file"):
         fp.Scene.from_csv(tmp_path / "nowhere.csv")

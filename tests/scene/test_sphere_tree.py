@@ -1,5 +1,7 @@
 """The tree over the spheres: it holds them all, and a search in it equals one of all pairs."""
 
+from unittest import mock
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import shape_placements
+from ffsr_plan.scene import sphere_tree as module
 from ffsr_plan.scene.sphere_tree import sphere_tree
 from tests.helpers.closed_forms import clearances, shape_distance
 from tests.helpers.urdf_builders import capsule, cylinder, random_configuration, random_robot
@@ -23,10 +26,16 @@ def mixed_scene(rng, count):
     return fp.Scene(centers, np.exp(rng.uniform(np.log(1e-3), np.log(1.0), count)))
 
 
-@given(seeds, st.sampled_from([1, 2, 3, 5, 40, 700]))
-def test_every_node_of_the_tree_contains_what_lies_below(seed, count):
+def compiled_tree(scene):
+    """The tree as of many spheres."""
+    with mock.patch.object(module, "_FEW", 0):
+        return sphere_tree(scene.centers, scene.radii)
+
+
+@given(seeds, st.sampled_from([1, 2, 3, 5, 40, 700]), st.booleans())
+def test_every_node_of_the_tree_contains_what_lies_below(seed, count, compiled):
     scene = mixed_scene(np.random.default_rng(seed), count)
-    tree = sphere_tree(scene.centers, scene.radii)
+    tree = compiled_tree(scene) if compiled else sphere_tree(scene.centers, scene.radii)
     assert sorted(tree.order.tolist()) == list(range(count))
     assert np.array_equal(tree.spheres[:, :3], scene.centers[tree.order])
     assert np.array_equal(tree.spheres[:, 3], scene.radii[tree.order])
@@ -42,6 +51,39 @@ def test_every_node_of_the_tree_contains_what_lies_below(seed, count):
         else:
             waiting += [left, right]
     assert sorted(leaves) == list(range(count))
+
+
+@given(seeds, st.sampled_from([2, 3, 5, 40, 700, 3000]))
+@settings(max_examples=40)
+def test_few_and_many_spheres_are_halved_alike(seed, count):
+    rng = np.random.default_rng(seed)
+    scene = fp.Scene(rng.normal(size=(count, 3)), rng.uniform(0.01, 0.1, count))
+    many, few = compiled_tree(scene), sphere_tree(scene.centers, scene.radii)
+    assert np.array_equal(many.children, few.children)
+    assert many.nodes == pytest.approx(few.nodes, abs=1e-12)
+
+
+ORDERS = {
+    "at one place": lambda n: np.zeros((n, 3)),
+    "sorted": lambda n: np.arange(n)[:, None] * np.ones(3) / n,
+    "up and down": lambda n: np.abs(np.arange(n) - n // 2)[:, None] * np.ones(3) / n,
+    "at two places": lambda n: np.arange(n)[:, None] % 2 * np.ones(3),
+}
+
+
+@pytest.mark.parametrize("name", ORDERS)
+def test_no_order_of_many_spheres_makes_the_tree_deep(name):
+    """The stack of a search has 64 entries; a tree of halves over 100 000 has 17 levels."""
+    scene = fp.Scene(ORDERS[name](100_000), np.full(100_000, 0.1))
+    tree, again = scene.tree, sphere_tree(scene.centers, scene.radii)
+    assert all(np.array_equal(a, b) for a, b in zip(tree, again, strict=True))
+    depth = np.zeros(len(tree.nodes), dtype=int)
+    for node, (left, right) in enumerate(tree.children):
+        if left >= 0:
+            depth[[left, right]] = depth[node] + 1
+    assert depth.max() <= 16
+    leaves = tree.children[tree.children[:, 0] < 0]
+    assert np.sum(leaves[:, 1] + 1 + leaves[:, 0]) == 100_000
 
 
 def all_pairs(robot, scene, q):
@@ -75,9 +117,10 @@ def test_the_search_agrees_with_all_pairs(seed, count):
         assert each[named, near.obstacle].min() == pytest.approx(each.min(), abs=1e-9)
 
 
-def test_the_sphere_tree_agrees_with_all_pairs_of_10000(robot):
+@pytest.mark.parametrize("count", [10_000, 200_000])
+def test_the_sphere_tree_agrees_with_all_pairs_of_many(robot, count):
     rng = np.random.default_rng(5)
-    scene = fp.Scene(rng.uniform(-8, 8, (10_000, 3)), rng.uniform(0.005, 0.05, 10_000))
+    scene = fp.Scene(rng.uniform(-8, 8, (count, 3)), rng.uniform(0.005, 0.05, count))
     q = np.array([random_configuration(robot, rng) for _ in range(5)])
     found = ObstacleQuery(robot, scene).distances(q)
     shapes, placed = robot.collision_model.geometryObjects, shape_placements(robot, q)

@@ -226,7 +226,7 @@ def in_space(every: Iterable[dict[str, list[Run]]]) -> str:
     states, width = float(np.mean([r.queries for r in planar])), 2.0 * REACHABLE / BINS
     rate = states / float(np.mean([r.seconds for r in planar]))
     lattice = PostureLattice(spatial_problem(10, (1, 0, 0)))
-    nodes, steps = int(lattice.allowed[1:-1].sum()), lattice.successors.shape[1]
+    nodes, steps = int(lattice.allowed[lattice.rows[1:-1]].sum()), lattice.successors.shape[1]
     ball = 8.0 * math.pi * (REACHABLE - math.sin(REACHABLE))
     bins = ball / width**3
     needed = nodes * bins

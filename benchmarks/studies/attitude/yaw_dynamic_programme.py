@@ -74,7 +74,7 @@ def cheapest_way(lattice, bins, reach=REACHABLE, ceiling=np.inf, grid=None):
     assert not np.any(step_rotations[..., :2]), "only for robots that turn in their plane"
     assert bins % 2 == 1
     ahead = least_to_go(lattice, grid)
-    m, count, offsets = len(step_rotations), len(grid.successors), len(grid.across)
+    m, count, offsets = len(grid.rows) - 1, len(grid.successors), len(grid.across)
     before = np.full((m + 1, count, bins, offsets), -1, dtype=np.int32)
     path = np.empty((m + 1, 2), dtype=np.int64)
     yaw_steps = 2.0 * np.arctan2(step_rotations[..., 2], step_rotations[..., 3])
@@ -107,7 +107,7 @@ def least_to_go(lattice, grid):
         frames=point,
         centers=np.zeros_like(grid.centers),
     )
-    return cost_to_go(shrunk, np.tile(grid.start, (len(point), 1)))
+    return cost_to_go(shrunk, np.tile(grid.start, (len(grid.rows), 1)))
 
 
 @njit  # not cached on disk: the cache would not see changes of the colony's kernels
@@ -124,6 +124,7 @@ def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
     queries = 0
     for i in range(m):
         new_cost[:] = np.inf
+        row, row_on = grid.rows[i], grid.rows[i + 1]
         for p in range(count):
             if not np.any(cost[p] < np.inf):
                 continue
@@ -131,7 +132,7 @@ def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
                 for b in range(offsets):
                     for b_on in range(offsets):
                         lengths[step, b, b_on] = edge_length(
-                            delta_d, grid.across[b, b_on], grid.squared_steps[i, p, step]
+                            delta_d, grid.across[b, b_on], grid.squared_steps[row, p, step]
                         )
             for k in range(bins):
                 for b in range(offsets):
@@ -140,9 +141,9 @@ def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
                         continue
                     for step in range(steps):
                         on = grid.successors[p, step]
-                        if on < 0 or not grid.allowed[i + 1, on]:
+                        if on < 0 or not grid.allowed[row_on, on]:
                             continue
-                        turned = yaw[p, k, b] + yaw_steps[i, p, step]
+                        turned = yaw[p, k, b] + yaw_steps[row, p, step]
                         k_on = math.floor(turned / width + 0.5) + half
                         if k_on < 0 or k_on >= bins:
                             continue
@@ -167,8 +168,8 @@ def _programme(grid, yaw_steps, ahead, width, weight, ceiling, before, path):
                     clearance = np.inf
                     if not free:
                         clearance = clearance_at(
-                            grid.obstacles, grid.frames[i + 1, p], grid.places[i + 1, b],
-                            grid.centers[i + 1, p], quat, workspace,
+                            grid.obstacles, grid.frames[row_on, p], grid.places[i + 1, b],
+                            grid.centers[row_on, p], quat, workspace,
                         )  # fmt: skip
                     if clearance > 0.0:
                         own = node_cost(grid.clearance_cost, clearance, i + 1 < m)

@@ -102,7 +102,7 @@ def trial_cost(
         total += current.costs[i]
     trial.least[first:last] = 0.0
     for i in range(last, m + 1):
-        displacement = spin * grid.radii[i, current.nodes[i, 1]]
+        displacement = spin * grid.radii[grid.rows[i], current.nodes[i, 1]]
         trial.least[i] = least_cost(grid.clearance_cost, current.clearances[i], displacement, i < m)
         total += trial.least[i]
     if total > limit:

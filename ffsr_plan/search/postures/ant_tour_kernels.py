@@ -26,7 +26,7 @@ def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
         grid: the lattice.
         nominal: (m + 1, 4) the attitudes.
     """
-    m, count, offsets = len(grid.step_rotations), len(grid.successors), len(grid.across)
+    m, count, offsets = len(grid.rows) - 1, len(grid.successors), len(grid.across)
     ahead, own = np.full((m + 1, offsets, count), np.inf), np.empty((offsets, count))
     ahead[m, grid.origin[0], grid.origin[1]] = 0.0
     for layer in range(m, -1, -1):  # in Python, so that Ctrl-C is received between two layers
@@ -45,13 +45,13 @@ def add_layer(grid: PostureGrid, nominal: Array, i: int, ahead: Array, own: Arra
         ahead: (m + 1, b, n) of `cost_to_go`, of which layer `i` is filled in.
         own: (b, n) costs of the nodes of the layer after it [m]; then those of layer `i`.
     """
-    m, count = len(grid.step_rotations), len(grid.successors)
+    m, count, row = len(grid.rows) - 1, len(grid.successors), grid.rows[i]
     offsets, steps = len(grid.across), grid.successors.shape[1]
     workspace, delta_d, free = new_workspace(), grid.delta_d, is_free(grid)
     if i < m:
         for b in range(offsets):
             for p in range(count):
-                if not grid.allowed[i, p]:
+                if not grid.allowed[row, p]:
                     continue
                 for step in range(steps):
                     on = grid.successors[p, step]
@@ -61,7 +61,7 @@ def add_layer(grid: PostureGrid, nominal: Array, i: int, ahead: Array, own: Arra
                         rest = ahead[i + 1, b_on, on] + own[b_on, on]
                         if rest < ahead[i, b, p]:
                             length = edge_length(
-                                delta_d, grid.across[b, b_on], grid.squared_steps[i, p, step]
+                                delta_d, grid.across[b, b_on], grid.squared_steps[row, p, step]
                             )
                             ahead[i, b, p] = min(ahead[i, b, p], rest + length)
     if i == 0:
@@ -70,7 +70,7 @@ def add_layer(grid: PostureGrid, nominal: Array, i: int, ahead: Array, own: Arra
         for p in range(count):
             own[b, p] = 0.0
             if ahead[i, b, p] < np.inf and not free:
-                frames, center = grid.frames[i, p], grid.centers[i, p]
+                frames, center = grid.frames[row, p], grid.centers[row, p]
                 grid.queries[0] += 1
                 clearance = clearance_at(
                     grid.obstacles, frames, grid.places[i, b], center, nominal[i], workspace
@@ -102,7 +102,7 @@ def walk(
         tau_posture: (m, n, k) pheromone of each posture step.
         path: (m + 1, 2) base offset and posture on each layer, filled in.
     """
-    m, steps, count = len(grid.step_rotations), grid.successors.shape[1], len(grid.across)
+    m, steps, count = len(grid.rows) - 1, grid.successors.shape[1], len(grid.across)
     wheel, delta_d = np.empty(steps * count), grid.delta_d
     path[0] = grid.origin
     for i in range(m):
@@ -114,7 +114,7 @@ def walk(
             for b_on in range(count):
                 weight = 0.0
                 if on >= 0 and ahead[i + 1, b_on, on] < np.inf:
-                    squared_step = grid.squared_steps[i, p, step]
+                    squared_step = grid.squared_steps[grid.rows[i], p, step]
                     cost = edge_length(delta_d, grid.across[b, b_on], squared_step)
                     cost += ahead[i + 1, b_on, on]
                     weight = math.exp(-min(max(cost - least, 0.0) / detour_scale, 500.0))

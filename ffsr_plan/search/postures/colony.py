@@ -65,7 +65,7 @@ class PostureColony:
         self._lattice, self._settings, self._rng = lattice, settings, rng
         self.grid = grid
         self._weights = np.array(settings.attitude_weights, dtype=np.float64)
-        m, postures, steps = grid.step_rotations.shape[:3]
+        m, (postures, steps) = len(grid.rows) - 1, grid.successors.shape
         offsets = len(grid.across)
         self._cost_to_go = cost_to_go(grid, _guiding_attitudes(lattice))
         self._offset_pheromone = np.ones((m, offsets, offsets))

@@ -14,7 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ffsr_plan.collision.nearest_sphere_kernels import STACK_SIZE, nearest_sphere
+from ffsr_plan.collision.nearest_sphere_kernels import (
+    STACK_SIZE,
+    distance_to_sphere,
+    nearest_sphere,
+)
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.core.kernels.compilation import kernel
 
@@ -51,12 +55,14 @@ class PostureGrid(NamedTuple):
     """Lattice data for the compiled search: b base offsets, n postures, k steps, g shapes."""
 
     obstacles: Obstacles
+    rows: IntArray
+    """(m + 1,) row that stands for each layer in the arrays of postures: 0 where all are alike."""
     frames: Array
-    """(m + 1, n, g, 15) shapes relative to the base."""
+    """(rows, n, g, 15) shapes relative to the base."""
     places: Array
     """(m + 1, b, 3) base origin, or where it floats the robot's centre of mass [m]."""
     centers: Array
-    """(m + 1, n, 3) centre of mass, base frame; zero where thrusters hold the base origin."""
+    """(rows, n, 3) centre of mass, base frame; zero where thrusters hold the base origin."""
     across: Array
     """(b, b) squared length between base offsets, in Eq. 6 [m^2]."""
     indices: IntArray
@@ -64,11 +70,11 @@ class PostureGrid(NamedTuple):
     successors: IntArray
     """(n, k)."""
     squared_steps: Array
-    """(m, n, k) squared length of joint steps [m^2]."""
+    """(rows, n, k) squared length of joint steps [m^2]."""
     step_rotations: Array
-    """(m, n, k, 4) rotation of the base over joint steps."""
+    """(rows, n, k, 4) rotation of the base over joint steps."""
     allowed: Flags
-    """(m + 1, n)."""
+    """(rows, n)."""
     refused: IntArray
     """(r, 5) refused edges: layer, base offsets and postures at both ends."""
     neighbours: IntArray
@@ -87,7 +93,7 @@ class PostureGrid(NamedTuple):
     free_error: float
     """Error of the goal attitude that costs nothing [rad]."""
     radii: Array
-    """(m + 1, n) largest distance of any point of the shapes from the centre of rotation [m]."""
+    """(rows, n) largest distance of any point of the shapes from the centre of rotation [m]."""
     queries: IntArray
     """(1,) configurations whose distance was asked for so far; counted by the kernels."""
 
@@ -99,6 +105,8 @@ class Workspace(NamedTuple):
     shift: Array
     stack: NDArray[np.int32]
     bounds: Array
+    found: IntArray
+    """(1,) the nearest sphere of the search before, a row of `Obstacles.spheres`."""
 
 
 class CostedPath(NamedTuple):
@@ -134,7 +142,7 @@ def step_between(indices: IntArray, tail: int, head: int) -> int:
 def new_workspace() -> Workspace:
     """Workspace to work in, for one thread."""
     stack, bounds = np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE)
-    return Workspace(np.empty(15), np.zeros(3), stack, bounds)
+    return Workspace(np.empty(15), np.zeros(3), stack, bounds, np.zeros(1, np.int64))
 
 
 @kernel
@@ -168,7 +176,7 @@ def clearance_at(
         (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
         (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)),
     )
-    frame, least, nearest = workspace.frame, np.inf, -1
+    frame, least, nearest = workspace.frame, np.inf, workspace.found[0]
     for g in range(len(frames)):
         own = frames[g]
         for a in range(3):
@@ -181,9 +189,12 @@ def clearance_at(
             )
             frame[12 + a] = own[12 + a]
         kind, shift = obstacles.kinds[g], workspace.shift
+        # a sphere that was near gives a small distance to start with
+        least = min(least, distance_to_sphere(kind, frame, shift, obstacles.spheres, nearest))
         least, nearest = nearest_sphere(
             obstacles, kind, frame, shift, least, nearest, workspace.stack, workspace.bounds
         )
+    workspace.found[0] = nearest
     return least
 
 
@@ -255,14 +266,15 @@ def take_edges(grid: PostureGrid, path: CostedPath, first: int, last: int) -> bo
         grid.squared_steps,
     )
     across, indices, allowed, refused = grid.across, grid.indices, grid.allowed, grid.refused
-    delta_d = grid.delta_d
+    delta_d, rows = grid.delta_d, grid.rows
     for i in range(first, last):
         b, p, b_on, p_on = nodes[i, 0], nodes[i, 1], nodes[i + 1, 0], nodes[i + 1, 1]
         step = step_between(indices, p, p_on)
-        if step < 0 or not allowed[i + 1, p_on] or is_refused(refused, i, b, p, b_on, p_on):
+        if step < 0 or not allowed[rows[i + 1], p_on] or is_refused(refused, i, b, p, b_on, p_on):
             return False
-        path.lengths[i] = edge_length(delta_d, across[b, b_on], squared_steps[i, p, step])
-        compose(quats[i], step_rotations[i, p, step], quats[i + 1])
+        row = rows[i]
+        path.lengths[i] = edge_length(delta_d, across[b, b_on], squared_steps[row, p, step])
+        compose(quats[i], step_rotations[row, p, step], quats[i + 1])
     return True
 
 
@@ -290,8 +302,8 @@ def visit(
     Returns:
         The total with the nodes' costs in place of the least ones; infinite beyond the limit.
     """
-    obstacles, frames, places, centers = (
-        grid.obstacles, grid.frames, grid.places, grid.centers,
+    obstacles, frames, places, centers, rows = (
+        grid.obstacles, grid.frames, grid.places, grid.centers, grid.rows,
     )  # fmt: skip
     nodes, quats = path.nodes, path.quats
     free = is_free(grid)
@@ -299,8 +311,9 @@ def visit(
         b, p, clearance = nodes[i, 0], nodes[i, 1], np.inf
         if not free:
             grid.queries[0] += 1
+            row = rows[i]
             clearance = clearance_at(
-                obstacles, frames[i, p], places[i, b], centers[i, p], quats[i], workspace
+                obstacles, frames[row, p], places[i, b], centers[row, p], quats[i], workspace
             )
         path.clearances[i] = clearance
         path.costs[i] = node_cost(grid.clearance_cost, clearance, i + 1 < len(nodes))

@@ -11,9 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.collision.nearest_sphere_kernels import nearest_pairs
+from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.rotations import IDENTITY, angle_between
 from ffsr_plan.problem.objective import nearness
+from ffsr_plan.robots.shape_arrays import ROUND
+from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 
 
@@ -26,9 +29,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     apart = np.full((m + 1, count), np.inf)
     if origin_is_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets
-        scene = problem.scene
-        for center, radius in zip(scene.centers, scene.radii, strict=True):
-            apart = np.minimum(apart, np.linalg.norm(places - center, axis=2) - radius)
+        apart = _point_clearances(problem.scene, places.reshape(-1, 3)).reshape(m + 1, count)
     nodes = nearness(problem, apart)  # at least that of `clearance_cap`
     nodes[[0, -1]] = 0.0
     costs, before = np.full((m + 1, count), np.inf), np.zeros((m + 1, count), dtype=np.int64)
@@ -53,14 +54,23 @@ def origin_is_inside(lattice: PostureLattice) -> bool:
     return False
 
 
+def _point_clearances(scene: Scene, points: Array) -> Array:
+    """(n,) signed distances of points (n, 3) from the nearest sphere [m]."""
+    kinds, frames = frozen(np.array([ROUND])), np.zeros((1, 1, 15))
+    frames[..., [0, 4, 8]] = 1.0  # a ball without extent
+    return nearest_pairs(scene.tree, kinds, frames, np.zeros(len(points), np.int64), points)[0]
+
+
 def _rotation_bound(lattice: PostureLattice) -> float:
     """Least length [m] of joint steps that rotate the base by the angle demanded less 1 degree."""
     problem = lattice.problem
     if not problem.reach_attitude:
         return 0.0
-    there = lattice.successors >= 0
-    angles: Array = angle_between(IDENTITY, lattice.step_rotations[:, there])
-    lengths = np.sqrt(problem.delta_d**2 + lattice.squared_steps[:, there])
-    rates = np.max(np.where(lengths > 0.0, angles / np.maximum(lengths, 1e-12), 0.0), initial=0.0)
+    there, rates = lattice.successors >= 0, 0.0
+    for rotated, squared in zip(lattice.step_rotations, lattice.squared_steps, strict=True):
+        angles: Array = angle_between(IDENTITY, rotated[there])
+        lengths = np.sqrt(problem.delta_d**2 + squared[there])
+        each = np.where(lengths > 0.0, angles / np.maximum(lengths, 1e-12), 0.0)
+        rates = max(rates, float(np.max(each, initial=0.0)))
     wanted = float(angle_between(problem.start[3:7], problem.goal[3:7])) - np.radians(1.0)
     return max(0.0, wanted / rates) if rates > 0.0 else 0.0

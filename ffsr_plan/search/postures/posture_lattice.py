@@ -25,9 +25,12 @@ from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.problem.problem import Problem
 
-_BYTES_PER_STEP = 100  # rotation, squared length and pheromone of a joint step
-_BYTES_PER_SHAPE = 450  # placements of a shape at a node
+_BYTES_PER_STEP = 50  # rotation and squared length of a joint step, and its number
+_BYTES_PER_PHEROMONE = 8  # of a joint step on a layer
+_BYTES_PER_SHAPE = 120  # placement of a shape at a node
+_BYTES_PER_PLACED_SHAPE = 450  # while the shapes at the nodes of one layer are placed
 _BYTES_PER_OFFSET_EDGE = 30  # pheromone, ants and what they lay
+_STEPS_AT_ONCE = 1024  # joint steps whose reaction is integrated together, to limit memory
 _JOINT_STEP = 0.1  # [rad or m] for which the base reaction is worked out at eight points
 _SECONDS_PER_POINT = 1e-5  # for each joint, base reaction at one point
 _SECONDS_PER_PAIR = 4e-6  # distance of two links
@@ -77,69 +80,91 @@ class PostureLattice:
         return bool(np.allclose(self.joint_values, self.joint_values[:1], rtol=0.0, atol=1e-12))
 
     @cached_property
+    def rows(self) -> IntArray:
+        """(m + 1,) row that stands for each layer in the arrays below: 0 where all are alike."""
+        count = len(self.joint_values)
+        return np.zeros(count, dtype=np.int64) if self.alike else np.arange(count)
+
+    @cached_property
     def allowed(self) -> Flags:
-        """(m + 1, n) postures within the joints' limits whose links keep clear of each other."""
-        robot, layers = self.problem.robot, 1 if self.alike else len(self.joint_values)
-        values = self.joint_values[:layers]
-        inside = np.all((values >= robot.lower) & (values <= robot.upper), axis=2)
+        """(rows, n) postures within the joints' limits whose links keep clear of each other."""
+        robot, values = self.problem.robot, self._distinct_values
+        inside: Flags = np.all((values >= robot.lower) & (values <= robot.upper), axis=2)
         query, apart = SelfQuery(robot), inside.copy()
         if not query.empty:
             for i, p in zip(*np.nonzero(inside), strict=True):
                 q = robot.assemble(np.zeros(3), IDENTITY, values[i, p])
                 apart[i, p] = query.distance(q) > 0.0
-        return np.broadcast_to(apart, self.joint_values.shape[:2])
+        return apart
 
     @cached_property
     def step_rotations(self) -> Array:
-        """(m, n, k, 4) rotation of the base over each joint step (xyzw), in its own axes."""
+        """(rows, n, k, 4) rotation of the base over each joint step (xyzw), in its own axes.
+
+        The last of several rows, that of the goal's layer, is left out.
+        """
         layers = 1 if self.alike else len(self.joint_values) - 1
-        m, n, k = len(self.joint_values) - 1, *self.successors.shape
+        n, k = self.successors.shape
         nominal = self.base.nominal
         still = IDENTITY if nominal.mode.attitude_reacts else rotations.exp(nominal.turn)
         result = np.tile(still, (layers, n, k, 1))
+        if not (nominal.mode.attitude_reacts and self.problem.robot.nd):
+            return result
         exists = np.tile(self.successors >= 0, (layers, 1, 1))
-        if nominal.mode.attitude_reacts and self.problem.robot.nd:
-            if self.alike:  # step k - 1 - step goes back and undoes the rotation
-                exists &= np.arange(k) > k // 2
-            i, p, step = np.nonzero(exists)
-            begin, on = self.joint_values[i, p], self.successors[p, step]
-            steps = self.joint_values[i + 1, on] - begin
-            words = f"the base's reaction to {len(steps)} joint steps, before the search"
-            with notify_after(5.0, words):
+        if self.alike:  # step k - 1 - step goes back and undoes the rotation
+            exists &= np.arange(k) > k // 2
+        chosen = np.flatnonzero(exists)
+        words = f"the base's reaction to {len(chosen)} joint steps, before the search"
+        parts = -(-len(chosen) // _STEPS_AT_ONCE)
+        with notify_after(5.0, words):
+            for part in range(parts):  # from all over the lattice: all need about as many substeps
+                i, p, step = np.unravel_index(chosen[part::parts], exists.shape)
+                begin, on = self.joint_values[i, p], self.successors[p, step]
+                steps = self.joint_values[i + 1, on] - begin
                 turned = Reaction(self.problem.robot, begin, steps).increments
-            result[i, p, step] = turned
-            if self.alike:
-                result[i, on, k - 1 - step] = rotations.inverse(turned)
-        return np.broadcast_to(result, (m, n, k, 4))
+                result[i, p, step] = turned
+                if self.alike:
+                    result[i, on, k - 1 - step] = rotations.inverse(turned)
+        return result
 
     @cached_property
     def squared_steps(self) -> Array:
-        """(m, n, k) squared length of each joint step beyond the nominal one, in Eq. 6 [m^2]."""
+        """(rows, n, k) squared length of each joint step beyond the nominal one, in Eq. 6 [m^2].
+
+        The last of several rows, that of the goal's layer, is left out.
+        """
         problem = self.problem
         slides = problem.robot.prismatic
         weights = np.where(slides, problem.position_weight, problem.rotation_weight)
         displaced = self.joint_values - self.base.nominal.joint_values[:, None]
-        steps = displaced[1:, np.maximum(self.successors, 0)] - displaced[:-1, :, None]
-        return np.asarray(np.sum((steps * weights) ** 2, axis=3))
+        result = np.empty((1 if self.alike else len(displaced) - 1, *self.successors.shape))
+        for i, row in enumerate(result):
+            steps = displaced[i + 1, np.maximum(self.successors, 0)] - displaced[i, :, None]
+            np.sum((steps * weights) ** 2, axis=2, out=row)
+        return result
 
     @cached_property
     def frames(self) -> Array:
-        """(m + 1, n, g, 15) collision shapes relative to the base, as of `Placements.frames`."""
-        layers = 1 if self.alike else len(self.joint_values)
-        values = self.joint_values[:layers].reshape(-1, self.problem.robot.nd)
-        q = self.problem.robot.assemble(np.zeros(3), IDENTITY, values)
-        frames = shape_placements(self.problem.robot, q).frames
-        frames = frames.reshape(layers, self.size, *frames.shape[1:])
-        return np.broadcast_to(frames, (len(self.joint_values), *frames.shape[1:]))
+        """(rows, n, g, 15) collision shapes relative to the base, as of `Placements.frames`."""
+        robot, values = self.problem.robot, self._distinct_values
+        result = np.empty((*values.shape[:2], len(robot.primitives.kinds), 15))
+        for row, own in zip(result, values, strict=True):
+            row[:] = shape_placements(robot, robot.assemble(np.zeros(3), IDENTITY, own)).frames
+        return result
 
     @cached_property
     def centers(self) -> Array:
-        """(m + 1, n, 3) centre of mass from the base origin [m]; zero where thrusters act."""
-        if not self.base.nominal.mode.floats:
-            return np.zeros((*self.joint_values.shape[:2], 3))
-        values = self.joint_values.reshape(-1, self.problem.robot.nd)
-        found = centers_of_mass(self.problem.robot, values)
-        return np.asarray(found.reshape(*self.joint_values.shape[:2], 3), dtype=np.float64)
+        """(rows, n, 3) centre of mass from the base origin [m]; zero where thrusters act."""
+        robot, values = self.problem.robot, self._distinct_values
+        result = np.zeros((*values.shape[:2], 3))
+        if self.base.nominal.mode.floats:
+            for row, own in zip(result, values, strict=True):
+                row[:] = centers_of_mass(robot, own)
+        return result
+
+    @property
+    def _distinct_values(self) -> Array:
+        return self.joint_values[:1] if self.alike else self.joint_values
 
     def _neighbours(self) -> IntArray:
         axes = self.problem.lattice.postures
@@ -166,10 +191,14 @@ def _check_size(problem: Problem) -> None:
     moves = bool(np.any(problem.joint_displacement))  # otherwise one layer speaks for all
     advice = "fewer divisions, fewer posture axes, or a smaller half_count or number of levels"
     counts = {"layers": layers, "postures": postures, "steps from a posture": around}
-    node = 24 * robot.nd + _BYTES_PER_SHAPE * shapes + 8 * offsets
-    step = _BYTES_PER_STEP + 24 * robot.nd + 32 * (3 + robot.nd) * points / (1 if moves else layers)
-    of_offsets = _BYTES_PER_OFFSET_EDGE * layers * offsets**2
-    check_memory("lattice postures", counts, step + node / around, advice, of_offsets)
+    share = 1.0 if moves else 1.0 / layers  # of the layers that have arrays of their own
+    node = 24 * robot.nd + 8 * offsets + share * (_BYTES_PER_SHAPE * shapes + 40)
+    each = _BYTES_PER_PHEROMONE + share * _BYTES_PER_STEP + node / around
+    fixed = _BYTES_PER_OFFSET_EDGE * layers * offsets**2
+    fixed += postures * (_BYTES_PER_PLACED_SHAPE * shapes + 24 * around * (1 + robot.nd))
+    at_once = min(_STEPS_AT_ONCE, share * layers * postures * around)
+    fixed += 32 * (3 + robot.nd) * points * at_once
+    check_memory("lattice postures", counts, each, advice, fixed)
     counts = counts | {"points": points} if moves else {**counts, "layers": 1, "points": points}
     check_work("lattice postures", counts, _SECONDS_PER_POINT * max(robot.nd, 1), advice)
     counts = {"layers": layers if moves else 1, "postures": postures}

@@ -16,7 +16,10 @@ from ffsr_plan.search.postures.posture_lattice import PostureLattice
 
 
 def posture_grid(lattice: PostureLattice) -> PostureGrid:
-    """The arrays of a lattice, no edge refused and no distance queried yet."""
+    """The arrays of a lattice, no edge refused and no distance queried yet.
+
+    The large ones are the lattice's own; the search does not change them.
+    """
     problem, base = lattice.problem, lattice.base
     nominal, cap = base.nominal, problem.clearance_cap
     places = nominal.positions[:, None] + base.offsets
@@ -31,15 +34,16 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
             tree.spheres.copy(),
             np.array(problem.robot.primitives.kinds),
         ),
-        frames=np.array(lattice.frames, order="C"),
+        rows=lattice.rows,
+        frames=lattice.frames,
         places=np.array(places, order="C"),
-        centers=np.array(lattice.centers, order="C"),
+        centers=lattice.centers,
         across=(base.distances * problem.position_weight) ** 2,
         indices=np.array(lattice.indices, order="C"),
         successors=np.array(lattice.successors, order="C"),
-        squared_steps=np.array(lattice.squared_steps, order="C"),
-        step_rotations=np.array(lattice.step_rotations, order="C"),
-        allowed=np.array(lattice.allowed, order="C"),
+        squared_steps=lattice.squared_steps,
+        step_rotations=lattice.step_rotations,
+        allowed=lattice.allowed,
         refused=np.zeros((0, 5), dtype=np.int64),
         neighbours=_neighbours(base.indices),
         origin=np.array([base.origin, lattice.origin]),
@@ -64,12 +68,14 @@ def without_edge(grid: PostureGrid, layer: int, path: IntArray) -> PostureGrid:
 
 
 def _radii(lattice: PostureLattice) -> Array:
-    """(m + 1, n) largest distance of any point of the shapes from the centre of rotation [m]."""
+    """(rows, n) largest distance of any point of the shapes from the centre of rotation [m]."""
     frames = lattice.frames
-    if not frames.shape[2]:
-        return np.zeros(frames.shape[:2])
-    places = np.linalg.norm(frames[..., 9:12] - lattice.centers[:, :, None], axis=-1)
-    return np.array(np.max(places + np.sum(frames[..., 12:15], axis=-1), axis=-1), order="C")
+    result = np.zeros(frames.shape[:2])
+    if frames.shape[2]:
+        for row, own, centers in zip(result, frames, lattice.centers, strict=True):
+            places = np.linalg.norm(own[..., 9:12] - centers[:, None], axis=-1)
+            row[:] = np.max(places + np.sum(own[..., 12:15], axis=-1), axis=-1)
+    return result
 
 
 def _neighbours(indices: IntArray) -> IntArray:

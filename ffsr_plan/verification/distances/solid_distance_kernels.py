@@ -10,6 +10,7 @@ from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.verification.distances.hull_gap_kernel import hull_gap
 from ffsr_plan.verification.distances.solid_arrays import SolidArrays
+from ffsr_plan.verification.distances.sphere_blocks import BLOCK, SphereBlocks
 
 
 @kernel
@@ -128,38 +129,52 @@ def pair_distances(
 
 
 @kernel
-def near_spheres(middles: Array, reaches: Array, sizes: Array, centers: Array, radii: Array):  # type: ignore[no-untyped-def]  # noqa: ANN201
+def near_spheres(middles: Array, reaches: Array, sizes: Array, blocks: SphereBlocks):  # type: ignore[no-untyped-def]  # noqa: ANN201
     """Spheres that can be the nearest one to a solid on some stretch of its way.
 
     Args:
         middles: (t, 3) a point close to the solid's middle all along each stretch [m].
         reaches: (t,) largest distance of the solid's middle from it on the stretch [m].
         sizes: (t,) radius of the sphere about the middle that contains the solid [m].
-        centers: (k, 3) centres of the spheres [m].
-        radii: (k,) [m].
+        blocks: the spheres.
 
     Returns:
         Numbers of spheres, lists one after another, and (t + 1,) where each list begins.
     """
+    centers, radii = blocks.centers, blocks.radii
     starts = np.zeros(len(middles) + 1, dtype=np.int64)
-    numbers = np.empty(len(middles), dtype=np.int64)
-    for fill in range(2):
+    numbers = np.empty(0, dtype=np.int64)
+    limits = np.full(len(middles), np.inf)
+    for fill in range(3):
         for t in range(len(middles)):
-            most = np.inf  # the distance of the nearest sphere is at most this
-            for k in range(len(radii)):
-                most = min(most, _apart(centers[k], middles[t]) - radii[k] + reaches[t])
-            found = starts[t]
-            for k in range(len(radii)):
-                distance = _apart(centers[k], middles[t]) - radii[k]
-                if distance - reaches[t] - sizes[t] <= most:
-                    if fill == 1:
-                        numbers[found] = k
-                    found += 1
-            if fill == 0:
+            limit, found = limits[t], starts[t]
+            for block in range(len(blocks.largest)):
+                if _to_block(middles[t], blocks, block) > limit:
+                    continue
+                for k in range(BLOCK * block, min(BLOCK * (block + 1), len(radii))):
+                    distance = _apart(centers[k], middles[t]) - radii[k]
+                    if fill == 0:  # the distance of the nearest sphere is at most this
+                        limit = min(limit, distance + 2.0 * reaches[t] + sizes[t])
+                    elif distance <= limit:
+                        if fill == 2:
+                            numbers[found] = k
+                        found += 1
+            limits[t] = limit
+            if fill == 1:
                 starts[t + 1] = found
-        if fill == 0:
+        if fill == 1:
             numbers = np.empty(starts[-1], dtype=np.int64)
     return numbers, starts
+
+
+@kernel
+def _to_block(point: Array, blocks: SphereBlocks, block: int) -> float:
+    """Lower bound on the distance of a point from all spheres of a block, less than zero inside."""
+    total = 0.0
+    for i in range(3):
+        beyond = max(blocks.lows[block, i] - point[i], point[i] - blocks.highs[block, i])
+        total += max(beyond, 0.0) ** 2
+    return math.sqrt(total) - blocks.largest[block]
 
 
 @kernel

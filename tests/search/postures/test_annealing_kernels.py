@@ -47,7 +47,7 @@ def ground_and_path(name):
     """A lattice and a path on it that wanders."""
     lattice = PostureLattice(PROBLEMS[name]())
     grid = posture_grid(lattice)
-    start = np.tile(grid.origin, (len(grid.step_rotations) + 1, 1))
+    start = np.tile(grid.origin, (len(grid.rows), 1))
     path = np.empty_like(start)
     rng, weights = np.random.default_rng(1), np.array([5.0, WEIGHT])
     anneal(grid, rng, start, 500, 5.0, 2.0, weights, path)

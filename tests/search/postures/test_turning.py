@@ -11,6 +11,7 @@ import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.loading import robot_from_urdf
+from ffsr_plan.search.postures import posture_lattice
 from ffsr_plan.search.postures.attitude_correction import attitude_slopes, corrected
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import CORRECTABLE
@@ -104,7 +105,7 @@ def test_the_oracle_agrees_with_all_paths_of_a_tiny_lattice():
             return
         for step, on in enumerate(lattice.successors[p]):
             if on >= 0 and lattice.allowed[0, on]:
-                edge = math.sqrt(lattice.squared_steps[layer, p, step])
+                edge = math.sqrt(lattice.squared_steps[lattice.rows[layer], p, step])
                 extend(on, layer + 1, length + edge, yaw + step_rotations[p, step])
 
     extend(lattice.origin, 0, 0.0, 0.0)
@@ -225,6 +226,17 @@ def test_slopes_of_the_correction_equal_finite_differences():
             ends.append(Reaction.along(robot, moved).attitudes(rotations.IDENTITY)[-1])
         turned = rotations.log(rotations.multiply(rotations.inverse(ends[1]), ends[0])) / (2.0 * h)
         assert slopes[:, column] == pytest.approx(turned, abs=1e-5)
+
+
+def test_the_reaction_to_many_joint_steps_is_that_to_each(monkeypatch):
+    """However many of them are integrated together."""
+    problem = spatial_problem(10, (1, 0, 0), levels=1)
+    moved = replace(problem, goal=problem.robot.configuration(joints={"left_1": 0.3}))
+    for each in (problem, moved):
+        monkeypatch.setattr(posture_lattice, "_STEPS_AT_ONCE", 10**6)
+        whole = PostureLattice(each).step_rotations
+        monkeypatch.setattr(posture_lattice, "_STEPS_AT_ONCE", 7)
+        assert np.max(rotations.angle_between(PostureLattice(each).step_rotations, whole)) < 1e-9
 
 
 def test_steps_back_undo_steps_there():

@@ -71,7 +71,7 @@ def every_path(lattice):
         )  # fmt: skip
         n, step, b_on = n.ravel(), step.ravel(), b_on.ravel()
         on = lattice.successors[p[n], step]
-        there = (on >= 0) & lattice.allowed[i + 1, on]
+        there = (on >= 0) & lattice.allowed[lattice.rows[i + 1], on]
         if i == m - 1:
             there &= (on == lattice.origin) & (b_on == base.origin)
         n, b_on, on = n[there], b_on[there], on[there]
@@ -149,7 +149,7 @@ def test_a_known_cost_spares_queries_and_changes_nothing(degrees):
 def test_the_base_origins_cost_to_go_is_a_lower_bound():
     lattice = small(5)
     grid = posture_grid(lattice)
-    ahead, m = least_to_go(lattice, grid), len(grid.step_rotations)
+    ahead, m = least_to_go(lattice, grid), len(grid.rows) - 1
     assert ahead[0].max() > 2.0  # the way is two metres long
     for bins in (11, 41, 401):
         way = cheapest_way(lattice, bins)
