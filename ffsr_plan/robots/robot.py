@@ -247,7 +247,7 @@ class SpaceRobot:
             InvalidInput: not a configuration of this robot; of N, the first that is not.
         """
         if np.ndim(q) == 2:
-            rows = np.asarray(q)
+            rows = [*q]  # type: ignore[misc]
             checked = np.array(
                 [self.check_configuration(f"q[{k}]", row) for k, row in enumerate(rows)]
             ).reshape(-1, self.model.nq)
