@@ -175,6 +175,13 @@ def test_a_key_that_is_there_twice_is_refused(fig2a_plan, tmp_path):
         fp.Plan.load(path)
 
 
+def test_a_plan_file_that_cannot_be_read_is_named_once(tmp_path):
+    for path, reason in ((tmp_path / "no.json", "No such file or"), (tmp_path, "Is a directory")):
+        message = rf"^plan file: got '{path}'; allowed: a readable UTF-8 file \({reason}"
+        with pytest.raises(fp.InvalidInput, match=message):
+            fp.Plan.load(path)
+
+
 def test_a_byte_order_mark_is_no_change(fig2a_plan, tmp_path):
     path = tmp_path / "plan.json"
     fig2a_plan.save(path)
