@@ -197,7 +197,8 @@ def path(what: str, value: object, *suffixes: str) -> Path:
     """
     ending = f" that ends in {' or '.join(suffixes)}" if suffixes else ""
     if not isinstance(value, (str, Path)) or not str(value):
-        raise InvalidInput(what, value, f"a path{ending}")
+        allowed = "a path that is not empty" if value == "" and not suffixes else f"a path{ending}"
+        raise InvalidInput(what, value, allowed)
     try:
         name = os.fsencode(value)
     except UnicodeEncodeError:
@@ -214,19 +215,22 @@ def path(what: str, value: object, *suffixes: str) -> Path:
     return found
 
 
-def one_of(what: str, value: object, names: Sequence[str]) -> str:
+def one_of(
+    what: str, value: object, names: Sequence[str], none: str = "no name, as there is none"
+) -> str:
     """Check a name.
 
     Args:
         what: name of the argument in the message.
         value: the name.
         names: the allowed names.
+        none: what is allowed if there are no names.
 
     Raises:
         InvalidInput: another name; suggests the most similar one.
     """
     if not isinstance(value, str) or value not in names:
-        raise unknown_name(what, value, names)
+        raise unknown_name(what, value, names, none)
     return value
 
 

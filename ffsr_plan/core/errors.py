@@ -13,6 +13,7 @@ from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.contacts import Contact, closing_obstacles, contact_list, obstacle_name
 
 _MOST_CHARACTERS_OF_A_VALUE = 120
+_SIMILAR = 0.55  # share of letters in common from which a name counts as misspelt
 _MOST_CHARACTERS = 600  # of the field, and of what is allowed
 
 
@@ -339,19 +340,31 @@ class PlanNotVerified(PlanningError):
         return "the plan does not verify: " + "; ".join(self.problems)
 
 
-def unknown_name(what: str, value: object, names: Iterable[str]) -> InvalidInput:
-    """An `InvalidInput` that lists the known names and suggests the most similar one."""
+def unknown_name(
+    what: str, value: object, names: Iterable[str], none: str = "no name, as there is none"
+) -> InvalidInput:
+    """An `InvalidInput` that lists the known names and suggests the most similar one.
+
+    Args:
+        what: the field or argument.
+        value: the name.
+        names: the known names.
+        none: what is allowed if there are no names.
+    """
     known = list(names)
     similar = nearest_name(value, known)
     hint = "" if similar is None else f" (did you mean '{similar}'?)"
-    return InvalidInput(what, value, f"{', '.join(known) if known else 'nothing'}{hint}")
+    return InvalidInput(what, value, f"{', '.join(known) or none}{hint}")
 
 
 def nearest_name(value: object, names: Iterable[str]) -> str | None:
-    """The name most similar to a value, whatever the case of the letters; None if none is."""
+    """The name most similar to a value, whatever the case of the letters; None if none is close.
+
+    Of a word for another thing, such as `diameter`, half of the letters are often those of a name.
+    """
     given = str(value)[:_MOST_CHARACTERS_OF_A_VALUE].casefold()
     known = {name.casefold(): name for name in reversed(list(names))}
-    similar = difflib.get_close_matches(given, known, n=1, cutoff=0.5)
+    similar = difflib.get_close_matches(given, known, n=1, cutoff=_SIMILAR)
     return known[similar[0]] if similar else None
 
 

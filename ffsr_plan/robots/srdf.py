@@ -6,8 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from xml.etree import ElementTree
 
 from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.robots.urdf.joints import NO_JOINT
 from ffsr_plan.robots.urdf.number_texts import numbers
 from ffsr_plan.robots.urdf.xml_reading import parse
+
+NO_POSTURE = "no posture, as no <group_state> of an SRDF gives the robot one"
+"""What messages allow where the name of a posture is wrong and there is none."""
 
 
 def disabled_pairs(text: str, where: str, links: Sequence[str]) -> tuple[tuple[str, str], ...]:
@@ -101,7 +105,7 @@ def _joint_values(
     for joint in joints:
         name = joint.get("name")
         if name is None or name not in limits:
-            raise unknown_name(f"{about}, joint", name, limits)
+            raise unknown_name(f"{about}, joint", name, limits, NO_JOINT)
         (value,) = numbers(f"{about}, joint '{name}'", joint.get("value"), 1)
         lower, upper = limits[name]
         if not lower <= value <= upper:

@@ -90,6 +90,28 @@ def test_the_most_similar_name_is_suggested():
     assert "did you mean 'point'?" in str(error)
 
 
+@pytest.mark.parametrize(
+    ("value", "names", "nearest"),
+    [
+        ("radios", ["name", "radius"], "radius"),
+        ("Fig2A", ["fig2a", "fig2b"], "fig2a"),
+        ("ants", ["ant-system", "max-min-ant-system"], "ant-system"),
+        ("cvs", ["center", "csv"], "csv"),
+        ("diameter", ["name", "radius"], None),
+        ("ants", ["name"], None),
+        ("stowed", [], None),
+    ],
+)
+def test_a_name_is_suggested_only_where_it_is_close(value, names, nearest):
+    assert errors.nearest_name(value, names) == nearest
+    assert ("did you mean" in str(errors.unknown_name("x", value, names))) == (nearest is not None)
+
+
+def test_where_there_is_no_name_the_message_says_so():
+    assert str(errors.unknown_name("x", "a", [], "no joint")).endswith("allowed: no joint")
+    assert str(errors.unknown_name("x", "a", ["b"], "no joint")).endswith("allowed: b")
+
+
 def test_a_message_is_one_short_line_whatever_it_quotes():
     for what, value, allowed in (
         ("a\nb\x1b[31m", "c\r\nd\x00", "one\n  two"),

@@ -142,6 +142,10 @@ FIELDS = [
     (lambda d: d["problem"]["scene"].update(radius=[]), "unknown key: got 'problem.scene.radius'"),
     (lambda d: d["problem"]["lattice"]["lateral"].update(width=1), "lattice.lateral.width'"),
     (lambda d: d["planner"].update(ant=1), "unknown key: got 'planner.ant'.*did you mean"),
+    (
+        lambda d: d.update(planner={"name": "lattice-optimum", "ants": 30}),
+        "unknown key: got 'planner.ants'; allowed: no key",
+    ),
     (lambda d: d["certificate"].pop("edges_free"), "certificate.edges_free: got None"),
     (lambda d: d.update(optimum="1"), "optimum: got '1'; allowed: a finite number"),
     (lambda d: d.update(length=True), "length: got True"),
