@@ -32,7 +32,8 @@ app = typer.Typer(
 # Paths are texts here: a `Path` of an empty text is the current folder, into which nobody means to
 # write five files.
 Out = Annotated[
-    str | None, typer.Option(metavar="DIRECTORY", help="Directory for plan.json, plan.html and the figures.")
+    str | None,
+    typer.Option(metavar="DIRECTORY", help="Directory for plan.json, plan.html and the figures."),
 ]
 PlanFile = Annotated[str, typer.Argument(metavar="PLAN.json")]
 Port = Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 for any free one.")]
@@ -193,7 +194,8 @@ def timed(
         float, typer.Option(help="Velocity change in m/s of pulses at corners of the base's path.")
     ] = 0.0,
     csv: Annotated[
-        str | None, typer.Option(metavar="PATH", help="Write the trajectory to this table.")] = None,
+        str | None, typer.Option(metavar="PATH", help="Write the trajectory to this table.")
+    ] = None,
     rate: Annotated[float, typer.Option(help="Rows per second of --csv.")] = 10.0,
     force: Force = False,
 ) -> None:

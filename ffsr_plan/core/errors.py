@@ -10,7 +10,13 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any, ClassVar, NamedTuple
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.contacts import Contact, closing_obstacles, contact_list, obstacle_name
+from ffsr_plan.core.contacts import (
+    Contact,
+    approach,
+    closing_obstacles,
+    contact_list,
+    obstacle_name,
+)
 
 _MOST_CHARACTERS_OF_A_VALUE = 120
 _SIMILAR = 0.55  # share of letters in common from which a name counts as misspelt
@@ -296,8 +302,8 @@ class UnprovenPath(PlanningError):
         """Where the proof fails, and which settings may help."""
         return (
             f"no path was found that could be proven free: between layers {self.layer - 1} and "
-            f"{self.layer} of {self.divisions}, link '{self.link}' comes within "
-            f"{self.distance:.4g} m of {obstacle_name(self.obstacle, self.source)}"
+            f"{self.layer} of {self.divisions}, link '{self.link}' {approach(self.distance)} "
+            f"{obstacle_name(self.obstacle, self.source)}"
             + _helping(self.advice or ("other posture axes",))
         )
 

@@ -65,7 +65,16 @@ def test_invalid_input_is_a_value_error():
             r"link 'a' is 0.1 m inside link 'b'; the goal is in collision too: link 'a' .*; "
             "what may help: move$",
         ),
-        (errors.UnprovenPath(3, "a", 5, 0.1, 40, "x.stl"), r"of x.stl \(sphere 5\); what may"),
+        (
+            errors.UnprovenPath(3, "a", 5, 0.1, 40, "x.stl"),
+            r"link 'a' comes within 0.1 m of x.stl \(sphere 5\); what may",
+        ),
+        (
+            errors.UnprovenPath(3, "a", 5, -0.2438, 40, "x.stl"),
+            r"link 'a' is 0.2438 m inside x.stl \(sphere 5\); what may",
+        ),
+        (errors.UnprovenPath(3, "a", "b", -5e-17, 40), "link 'a' touches link 'b'; what may"),
+        (errors.StartInCollision("a", 3, 5.55e-17), "start .*: link 'a' touches obstacle 3$"),
         (
             errors.PoseOutOfReach("t", 0.1, None, np.zeros(7), errors.HeldBase(True, 0.1, 0.05)),
             r"within reach of a held base, .* by 5\.73 degrees and takes the frame 0\.05 m away",

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.problem.posture_axes import PostureTarget
+from ffsr_plan.robots.loading import robot_from_urdf
 
 
 def test_both_kinds_are_posture_axes():
