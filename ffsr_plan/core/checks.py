@@ -196,9 +196,10 @@ def path(what: str, value: object, *suffixes: str) -> Path:
         InvalidInput: of another type, or no file can have such a name.
     """
     ending = f" that ends in {' or '.join(suffixes)}" if suffixes else ""
-    if not isinstance(value, (str, Path)) or not str(value):
-        allowed = "a path that is not empty" if value == "" and not suffixes else f"a path{ending}"
-        raise InvalidInput(what, value, allowed)
+    if not isinstance(value, (str, Path)):
+        raise InvalidInput(what, value, f"a path{ending}")
+    if not str(value):
+        raise InvalidInput(what, value, f"a path{ending or ' that is not empty'}")
     try:
         name = os.fsencode(value)
     except UnicodeEncodeError:
