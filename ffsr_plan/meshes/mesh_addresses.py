@@ -132,6 +132,7 @@ def _searched(address: str, folders: Sequence[str]) -> str:
     scheme, rest = _parts(address)
     if scheme not in ("", "file", "package"):
         return f"nothing is downloaded from {scheme}://"
+    folders = [*map(os.path.abspath, folders)]
     places = ", ".join(folders) or "no folder, as none is given"
     if scheme != "package":
         return "there is none" if os.path.isabs(rest) else f"looked for in {places}"
