@@ -29,10 +29,13 @@ app = typer.Typer(
     help="Collision-free motions of free-flying space robots, base reaction included.",
 )
 
+# Paths are texts here: a `Path` of an empty text is the current folder, into which nobody means to
+# write five files.
 Out = Annotated[
-    Path | None, typer.Option(help="Directory for plan.json, plan.html and the figures.")
+    str | None,
+    typer.Option(metavar="DIRECTORY", help="Directory for plan.json, plan.html and the figures."),
 ]
-PlanFile = Annotated[Path, typer.Argument(metavar="PLAN.json")]
+PlanFile = Annotated[str, typer.Argument(metavar="PLAN.json")]
 Port = Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 for any free one.")]
 Browser = Annotated[
     bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
@@ -141,7 +144,7 @@ def verify(
 @app.command()
 def export(
     plan_file: PlanFile,
-    table: Annotated[Path, typer.Argument(metavar="PATH.csv")],
+    table: Annotated[str, typer.Argument(metavar="PATH.csv")],
     samples: Annotated[
         int | None, typer.Option(help="Evenly spaced rows; one per node by default.")
     ] = None,
@@ -158,7 +161,7 @@ def export(
 @app.command()
 def gif(
     plan_file: PlanFile,
-    picture: Annotated[Path, typer.Argument(metavar="PATH.gif")],
+    picture: Annotated[str, typer.Argument(metavar="PATH.gif")],
     frames: Annotated[int, typer.Option(help="Number of pictures.")] = 60,
     width: Annotated[int, typer.Option(help="Width in pixels.")] = 720,
     side_view: Annotated[bool, typer.Option("--side", help="Seen from the side.")] = False,
@@ -190,7 +193,9 @@ def timed(
     velocity_jump: Annotated[
         float, typer.Option(help="Velocity change in m/s of pulses at corners of the base's path.")
     ] = 0.0,
-    csv: Annotated[Path | None, typer.Option(help="Write the trajectory to this table.")] = None,
+    csv: Annotated[
+        str | None, typer.Option(metavar="PATH", help="Write the trajectory to this table.")
+    ] = None,
     rate: Annotated[float, typer.Option(help="Rows per second of --csv.")] = 10.0,
     force: Force = False,
 ) -> None:

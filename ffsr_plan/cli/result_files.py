@@ -52,7 +52,7 @@ def write_results(plan: Plan, title: str, target: Path) -> None:
         raise
 
 
-def check_target(target: Path, force: bool) -> Path:
+def check_target(target: str | Path, force: bool) -> Path:
     """Check before planning that results can be written into a directory.
 
     Args:
@@ -63,9 +63,9 @@ def check_target(target: Path, force: bool) -> Path:
         The directory.
 
     Raises:
-        InvalidInput: not a writable directory, or results that may not be replaced.
+        InvalidInput: an empty path, not a writable directory, or results that may not be replaced.
     """
-    checked_path("--out", target)
+    target = checked_path("--out", target)
     existing = next(p for p in (target, *target.absolute().parents) if p.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK):
         raise InvalidInput("--out", str(target), "a directory that can be written")
@@ -79,7 +79,7 @@ def check_target(target: Path, force: bool) -> Path:
     return target
 
 
-def check_replacement(what: str, path: Path, force: bool) -> None:
+def check_replacement(what: str, path: str | Path, force: bool) -> None:
     """Raise `InvalidInput` if a file exists and may not be replaced.
 
     Args:

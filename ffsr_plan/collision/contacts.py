@@ -6,7 +6,7 @@ import numpy as np
 
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.contacts import Contact
+from ffsr_plan.core.contacts import TOUCHING, Contact
 from ffsr_plan.core.errors import GoalInCollision, StartInCollision
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
@@ -80,7 +80,9 @@ def _advice(robot: SpaceRobot, scene: Scene, found: tuple[Contact, ...]) -> tupl
     links |= {contact.obstacle for contact in found if isinstance(contact.obstacle, str)}
     if spheres:
         way = "the base or the joints" if robot.nd else "the base"
-        advice.append(f"move {way} out by more than {max(spheres):.3g} m")
+        deep = max(spheres) > TOUCHING
+        far = f"{max(spheres):.3g} m" if deep else "the tolerance"
+        advice.append(f"move {way} out by more than {far}")
     if spheres and scene.excess and max(spheres) <= scene.excess:
         advice.append(f"a smaller excess of the cover, which is now up to {scene.excess:g} m")
     if len(spheres) < len(found):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.contacts import TOUCHING
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted
 from ffsr_plan.core.text_files import write_text
@@ -73,7 +74,10 @@ class SelfCollisions(Sequence[SelfCollision]):
         return len(self.pairs)
 
     def __repr__(self) -> str:
-        listed = "; ".join(f"{a} and {b} by {depth:.4g} m" for a, b, depth in self.pairs[:5])
+        listed = "; ".join(
+            f"{a} and {b} " + (f"by {depth:.4g} m" if depth > TOUCHING else "touch")
+            for a, b, depth in self.pairs[:5]
+        )
         more = f"; and {len(self) - 5} more" if len(self) > 5 else ""
         return f"SelfCollisions({counted(len(self), 'pair')}{': ' if listed else ''}{listed}{more})"
 

@@ -16,17 +16,23 @@ from numpy.typing import ArrayLike
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput, unknown_name
 
-_LARGEST_NUMBER = 1e9  # [m or rad]
 _NORM_ROUNDING = 1e-15  # of the norm of numbers that have been divided by their norm
+_MOST_SHOWN = 16  # numbers of an array in a message; of more, only the first wrong one
 _LARGEST_WHOLE_NUMBER = 2**128  # seeds may be as large; counts have limits of their own
 _LONGEST_NAME, _LONGEST_PATH = 255, 4095  # [bytes], as Linux and others limit them
+LARGEST_NUMBER = 1e9
+"""Limit of all other numbers [m or rad]."""
 FARTHEST = 1e5
 """Limit [m] of coordinates in the world: for larger ones, floating-point errors would exceed what
 `interval_halving.ROUNDING` allows."""
 
 
 def finite_array(
-    what: str, value: ArrayLike, shape: tuple[int, ...], at_most: float = _LARGEST_NUMBER
+    what: str,
+    value: ArrayLike,
+    shape: tuple[int, ...],
+    at_most: float = LARGEST_NUMBER,
+    row: str = "",
 ) -> Array:
     """Check an array of finite numbers.
 
@@ -35,12 +41,14 @@ def finite_array(
         value: array or nested sequence.
         shape: wanted shape; -1 for any length.
         at_most: largest magnitude.
+        row: what the message calls one along the first axis; then it always names the first that
+            is wrong, counted from 0, and otherwise only where the array is too long to be shown.
 
     Returns:
         Read-only float copy.
 
     Raises:
-        InvalidInput: another shape, not numbers, or not finite.
+        InvalidInput: another shape, not numbers, masked, too large, or not finite.
     """
     wanted = "x".join("N" if n < 0 else str(n) for n in shape)
     allowed = f"finite numbers of at most {at_most:g}, of shape ({wanted})"
@@ -48,6 +56,8 @@ def finite_array(
         array = np.array(value, dtype=np.float64)
     except Exception:  # objects may raise anything where numpy looks at them
         raise InvalidInput(what, value, allowed) from None
+    if _is_masked(value):
+        raise InvalidInput(what, value, f"{allowed}, none of them masked")
     if not _holds_numbers(value):
         raise InvalidInput(what, value, allowed)
     if array.size == 0 and 0 in [max(n, 0) for n in shape]:
@@ -57,9 +67,23 @@ def finite_array(
     )
     if not fits:
         raise InvalidInput(f"{what} (shape {array.shape})", value, allowed)
-    if not np.all(np.abs(array) <= at_most):  # NaN fails too
-        raise InvalidInput(what, value, allowed)
+    wrong = ~(np.abs(array) <= at_most)  # NaN is wrong too
+    if np.any(wrong):
+        if not array.ndim or (not row and array.size <= _MOST_SHOWN):
+            raise InvalidInput(what, value, allowed)
+        first = tuple(np.argwhere(wrong)[0].tolist())
+        where = f"{what}, {row or 'entry'} {first[0]}"
+        raise InvalidInput(where, float(array[first]), f"a finite number of at most {at_most:g}")
     return frozen(array)
+
+
+def _is_masked(value: object) -> bool:
+    """Whether a number of an array is masked: what lies under the mask is not meant to be used."""
+    if isinstance(value, np.ndarray):
+        return bool(np.ma.is_masked(value))
+    if isinstance(value, (list, tuple)) and not set(map(type, value)) <= {float, int}:
+        return any(map(_is_masked, value))
+    return False
 
 
 def _holds_numbers(value: object) -> bool:
@@ -172,8 +196,10 @@ def path(what: str, value: object, *suffixes: str) -> Path:
         InvalidInput: of another type, or no file can have such a name.
     """
     ending = f" that ends in {' or '.join(suffixes)}" if suffixes else ""
-    if not isinstance(value, (str, Path)) or not str(value):
+    if not isinstance(value, (str, Path)):
         raise InvalidInput(what, value, f"a path{ending}")
+    if not str(value):
+        raise InvalidInput(what, value, f"a path{ending or ' that is not empty'}")
     try:
         name = os.fsencode(value)
     except UnicodeEncodeError:
@@ -190,19 +216,22 @@ def path(what: str, value: object, *suffixes: str) -> Path:
     return found
 
 
-def one_of(what: str, value: object, names: Sequence[str]) -> str:
+def one_of(
+    what: str, value: object, names: Sequence[str], none: str = "no name, as there is none"
+) -> str:
     """Check a name.
 
     Args:
         what: name of the argument in the message.
         value: the name.
         names: the allowed names.
+        none: what is allowed if there are no names.
 
     Raises:
         InvalidInput: another name; suggests the most similar one.
     """
     if not isinstance(value, str) or value not in names:
-        raise unknown_name(what, value, names)
+        raise unknown_name(what, value, names, none)
     return value
 
 

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 from ffsr_plan.core.formatting import counted
 
+TOUCHING = 1e-9
+"""Depth [m] below which two bodies touch: it is the rounding of a distance of zero."""
 _MOST_NAMED = 12  # obstacles or contacts in one message
 
 
@@ -24,6 +26,17 @@ class Contact(NamedTuple):
     obstacle: int | str | None
     depth: float
     source: str = ""
+
+
+def approach(distance: float) -> str:
+    """How near something comes to what the text goes on to name.
+
+    Args:
+        distance: [m], negative in penetration.
+    """
+    if distance > TOUCHING:
+        return f"comes within {distance:.4g} m of"
+    return "touches" if distance > -TOUCHING else f"is {-distance:.4g} m inside"
 
 
 def obstacle_name(obstacle: int | str | None, source: str = "") -> str:
@@ -54,7 +67,7 @@ def contact_list(contacts: tuple[Contact, ...]) -> str:
     for (link, _), group in groups.items():
         more = f" and {counted(len(group) - 1, 'sphere')} more of it" if len(group) > 1 else ""
         name = obstacle_name(group[0].obstacle, group[0].source)
-        texts.append(f"link '{link}' is {group[0].depth:.4g} m inside {name}{more}")
+        texts.append(f"link '{link}' {approach(-group[0].depth)} {name}{more}")
     if len(texts) > _MOST_NAMED:
         texts[_MOST_NAMED:] = [f"{len(texts) - _MOST_NAMED} more"]
     return "; ".join(texts)

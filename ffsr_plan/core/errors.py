@@ -10,9 +10,16 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any, ClassVar, NamedTuple
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.contacts import Contact, closing_obstacles, contact_list, obstacle_name
+from ffsr_plan.core.contacts import (
+    Contact,
+    approach,
+    closing_obstacles,
+    contact_list,
+    obstacle_name,
+)
 
 _MOST_CHARACTERS_OF_A_VALUE = 120
+_SIMILAR = 0.55  # share of letters in common from which a name counts as misspelt
 _MOST_CHARACTERS = 600  # of the field, and of what is allowed
 
 
@@ -295,8 +302,8 @@ class UnprovenPath(PlanningError):
         """Where the proof fails, and which settings may help."""
         return (
             f"no path was found that could be proven free: between layers {self.layer - 1} and "
-            f"{self.layer} of {self.divisions}, link '{self.link}' comes within "
-            f"{self.distance:.4g} m of {obstacle_name(self.obstacle, self.source)}"
+            f"{self.layer} of {self.divisions}, link '{self.link}' {approach(self.distance)} "
+            f"{obstacle_name(self.obstacle, self.source)}"
             + _helping(self.advice or ("other posture axes",))
         )
 
@@ -339,19 +346,31 @@ class PlanNotVerified(PlanningError):
         return "the plan does not verify: " + "; ".join(self.problems)
 
 
-def unknown_name(what: str, value: object, names: Iterable[str]) -> InvalidInput:
-    """An `InvalidInput` that lists the known names and suggests the most similar one."""
+def unknown_name(
+    what: str, value: object, names: Iterable[str], none: str = "no name, as there is none"
+) -> InvalidInput:
+    """An `InvalidInput` that lists the known names and suggests the most similar one.
+
+    Args:
+        what: the field or argument.
+        value: the name.
+        names: the known names.
+        none: what is allowed if there are no names.
+    """
     known = list(names)
     similar = nearest_name(value, known)
     hint = "" if similar is None else f" (did you mean '{similar}'?)"
-    return InvalidInput(what, value, f"{', '.join(known) if known else 'nothing'}{hint}")
+    return InvalidInput(what, value, f"{', '.join(known) or none}{hint}")
 
 
 def nearest_name(value: object, names: Iterable[str]) -> str | None:
-    """The name most similar to a value, whatever the case of the letters; None if none is."""
+    """The name most similar to a value, whatever the case of the letters; None if none is close.
+
+    Of a word for another thing, such as `diameter`, half of the letters are often those of a name.
+    """
     given = str(value)[:_MOST_CHARACTERS_OF_A_VALUE].casefold()
     known = {name.casefold(): name for name in reversed(list(names))}
-    similar = difflib.get_close_matches(given, known, n=1, cutoff=0.5)
+    similar = difflib.get_close_matches(given, known, n=1, cutoff=_SIMILAR)
     return known[similar[0]] if similar else None
 
 

@@ -221,7 +221,7 @@ class UnknownKey(InvalidInput):
     def __init__(self, key: str, known: Sequence[str], path: str = "", of: str = "") -> None:
         nearest = nearest_name(key, known)
         hint = "" if nearest is None else f" (did you mean '{path}{nearest}'?)"
-        names = ", ".join(path + name for name in known) or "nothing"
+        names = ", ".join(path + name for name in known) or "no key, as it has none"
         super().__init__(f"unknown key{of and ' of '}{of}", path + key, names + hint)
         self.key, self.known, self.path = key, tuple(known), path
 

@@ -30,28 +30,29 @@ _STALE_AFTER = 60.0  # [s] since a temporary file was last written to
 _STREAMS = re.compile(r"/dev/(std(in|out|err)|fd/\d+)|/proc/.*")
 
 
-def read_text(what: str, path: Path, encoding: str = "utf-8") -> str:
+def read_text(what: str, path: Path, encoding: str = "utf-8", at_most: int = _LARGEST_FILE) -> str:
     """Read a text file.
 
     Args:
         what: name of the argument in error messages.
         path: the file.
         encoding: `utf-8`, or `utf-8-sig` to skip a byte order mark.
+        at_most: size that is allowed [bytes].
 
     Returns:
         Its text, line ends as newlines.
 
     Raises:
-        InvalidInput: a file that cannot be read, is not UTF-8, has more than 256 MB or is a pointer
-            of Git LFS.
+        InvalidInput: a file that cannot be read, is not UTF-8, is too large or is a pointer of
+            Git LFS.
     """
     try:
         content = bytearray()
         with path.open("rb") as file:
             while part := file.read(2**20):  # in parts: a device may have no end
                 content += part
-                if len(content) > _LARGEST_FILE:
-                    raise ValueError("more than 256 MB")
+                if len(content) > at_most:
+                    raise ValueError(f"more than {at_most // 10**6} MB")
         if is_lfs_pointer(bytes(content[:64])):
             allowed = "the file itself, which `git lfs pull` fetches; this is a pointer of Git LFS"
             raise InvalidInput(what, str(path), allowed)
@@ -60,7 +61,7 @@ def read_text(what: str, path: Path, encoding: str = "utf-8") -> str:
     except InvalidInput:
         raise
     except (OSError, ValueError) as error:  # a UnicodeDecodeError is a ValueError
-        raise InvalidInput(what, str(path), f"a readable UTF-8 file ({_reason(error)})") from None
+        raise InvalidInput(what, str(path), f"a readable UTF-8 file ({reason(error)})") from None
 
 
 def is_lfs_pointer(content: bytes) -> bool:
@@ -119,7 +120,7 @@ def write_files(what: str, contents: Mapping[Path, str | bytes]) -> None:
                 os.replace(name, path)
                 del partials[name]
     except (OSError, ValueError) as error:  # an empty name is a ValueError
-        allowed = f"a file that can be written ({_reason(error)})"
+        allowed = f"a file that can be written ({reason(error)})"
         raise InvalidInput(what, str(path), allowed) from None
 
 
@@ -204,5 +205,6 @@ def _ctrl_c_deferred() -> Iterator[None]:
             signal.raise_signal(signal.SIGINT)
 
 
-def _reason(error: Exception) -> object:
-    return getattr(error, "strerror", None) or error  # without the path once more
+def reason(error: Exception) -> str:
+    """Why a file cannot be read or written, without its path once more."""
+    return str(getattr(error, "strerror", None) or error) or type(error).__name__

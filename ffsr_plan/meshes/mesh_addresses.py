@@ -62,9 +62,7 @@ def found(address: str, folders: Sequence[str], where: str) -> Path:
     """
     path = find(address, folders)
     if path is None:
-        raise InvalidInput(
-            where, address, f"a file of this machine ({_searched(address, folders)})"
-        )
+        raise InvalidInput(where, address, f"an existing file ({_searched(address, folders)})")
     return path
 
 
@@ -134,9 +132,10 @@ def _searched(address: str, folders: Sequence[str]) -> str:
     scheme, rest = _parts(address)
     if scheme not in ("", "file", "package"):
         return f"nothing is downloaded from {scheme}://"
-    places = ", ".join(folders) or "no folder"
+    folders = [*map(os.path.abspath, folders)]
+    places = ", ".join(folders) or "no folder, as none is given"
     if scheme != "package":
-        return f"an absolute path, or a path in {places}"
+        return "there is none" if os.path.isabs(rest) else f"looked for in {places}"
     package = rest.partition("/")[0]
     above = f", the folders above {folders[-1]}" if folders else ""
     variables = " and ".join(

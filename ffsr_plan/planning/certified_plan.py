@@ -120,7 +120,7 @@ class Plan(PlanData):
         Raises:
             InvalidInput: no such file, cut short, or changed since it was written.
         """
-        return Plan._of(plan_file.read(checked_path("path", path)))
+        return Plan._of(plan_file.read(checked_path("plan file", path)))
 
     def to_dict(self) -> dict[str, Any]:
         """Everything, as in the file that `save` writes, in plain Python values fit for JSON."""

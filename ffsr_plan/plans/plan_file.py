@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.text_files import write_text
+from ffsr_plan.core.text_files import read_text, write_text
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_reading import PLAIN, plan_of
 from ffsr_plan.plans.plan_tables import FORMAT
@@ -101,10 +101,9 @@ def read(path: Path) -> PlanData:
         InvalidInput: no such file, cut short, or changed since it was written.
     """
     what = f"plan file '{path}'"
+    text = read_text("plan file", path, "utf-8-sig", _LARGEST_FILE)
     try:
-        data = json.loads(
-            _text(what, path), parse_constant=_no_number, object_pairs_hook=_without_twins
-        )
+        data = json.loads(text, parse_constant=_no_number, object_pairs_hook=_without_twins)
     except json.JSONDecodeError as error:
         raise InvalidInput(
             what, f"broken JSON at line {error.lineno}", "a whole plan file, not one cut short"
@@ -123,17 +122,6 @@ def read(path: Path) -> PlanData:
             what, "contents that do not match their digest", "an unchanged plan file"
         )
     return plan_of(what, fields)
-
-
-def _text(what: str, path: Path) -> str:
-    try:
-        if path.is_file() and path.stat().st_size > _LARGEST_FILE:
-            raise InvalidInput(what, f"{path.stat().st_size} bytes", f"at most {_LARGEST_FILE}")
-        return path.read_text(encoding="utf-8-sig")
-    except (OSError, ValueError) as error:  # also a NUL in the path, and what is not UTF-8
-        if isinstance(error, InvalidInput):
-            raise
-        raise InvalidInput(what, type(error).__name__, "a readable plan file") from None
 
 
 def _no_number(text: str) -> float:

@@ -11,13 +11,14 @@ import numpy as np
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import finite_array
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.settings import UnknownKey
+from ffsr_plan.core.settings import UnknownKey, from_mapping
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_tables import PlanTable, ProblemTable, RobotTable
 from ffsr_plan.plans.robot_table import robot_table
+from ffsr_plan.plans.search_figures import check_search
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import Containers
 from ffsr_plan.robots.loading import robot_from_urdf
@@ -42,16 +43,16 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
     Raises:
         InvalidInput: with the path of the field in the table.
     """
-    table = _within(what, "", lambda: PlanTable(**data))
+    table = _within(what, "", lambda: from_mapping(PlanTable, data))
     _check_sizes(what, table)
     problem = _problem(what, table.problem)
     lattice = _within(what, "problem.lattice", lambda: LayeredLattice(problem))
     _within(what, "planner", lambda: table.planner.refuse(problem))
     _check_nodes(what, table, problem)
-    _check_trails(what, table, problem)
+    check_search(what, table, problem)
     least = table.certificate.least_clearance
     counts = table.certificate
-    plan = PlanData(
+    return PlanData(
         problem=problem,
         planner=table.planner,
         seed=table.seed,
@@ -72,10 +73,6 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
         interrupted=table.interrupted,
         seconds=table.seconds,
     )  # fmt: skip
-    if plan.optimum > plan.lattice_objective * (1.0 + 1e-9):
-        allowed = f"at most lattice_objective, {plan.lattice_objective!r}"
-        raise InvalidInput(f"{what}, optimum", plan.optimum, allowed)
-    return plan
 
 
 def _within(what: str, path: str, make: Callable[[], T]) -> T:
@@ -83,15 +80,16 @@ def _within(what: str, path: str, make: Callable[[], T]) -> T:
     try:
         return make()
     except InvalidInput as error:
-        inner = error.what
+        inner = error.what.removeprefix(".")
         if path and (isinstance(error, UnknownKey) or path.endswith("robot")):
             inner = f"{path}: {inner}"  # errors of a robot begin with its name
         elif path:
             inner = f"{path}.{inner}" if re.match(r"[a-z_]+\b", inner) else path + inner
-        raise InvalidInput(f"{what}, {inner}", error.value, error.allowed) from None
+        where = f"{what}, {inner}" if inner else what
+        raise InvalidInput(where, error.value, error.allowed) from None
     except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError) as error:
         where = f"{what}, {path}" if path else what
-        raise InvalidInput(where, repr(error), "what a plan file holds") from None
+        raise InvalidInput(where, str(error), "what a plan file holds") from None
 
 
 def _check_sizes(what: str, table: PlanTable) -> None:
@@ -230,14 +228,3 @@ def _check_nodes(what: str, table: PlanTable, problem: Problem) -> None:
             if node not in inside:
                 allowed = f"{inside[0]} to {inside[-1]}"
                 raise InvalidInput(f"{what}, nodes, {axis}", node, allowed)
-
-
-def _check_trails(what: str, table: PlanTable, problem: Problem) -> None:
-    """Raise `InvalidInput` for edges that the lattice does not have."""
-    lattice = problem.lattice
-    offsets = int(np.prod([2 * getattr(lattice, n).half_count + 1 for n in lattice.axes]))
-    for end, most in (("layer", lattice.divisions), ("tail", offsets), ("head", offsets)):
-        walked = getattr(table.trails, end)
-        outside = walked[(walked < 0) | (walked >= most)]
-        if len(outside):
-            raise InvalidInput(f"{what}, trails.{end}", int(outside[0]), f"0 to {most - 1}")

@@ -33,11 +33,13 @@ class Columns(Rule):
         dimensions: their numbers of axes that are allowed.
         whole: whether the numbers are integers.
         infinite: whether null stands for what is infinite.
+        at_least: least number that is allowed.
     """
 
     dimensions: tuple[int, ...] = (1,)
     whole: bool = False
     infinite: bool = False
+    at_least: float = -_LARGEST
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> Array | IntArray:
         """See `Rule.check`."""
@@ -55,6 +57,11 @@ class Columns(Rule):
         most = 2.0**53 if self.whole else _LARGEST
         if array.ndim not in self.dimensions or np.any(np.abs(array[~missing]) >= most):
             raise InvalidInput(what, value, self._allowed())
+        for first in np.argwhere(array < self.at_least)[:1]:
+            place = ".".join(map(str, [what, *first.tolist()]))
+            got = array[tuple(first)].item()
+            got = int(got) if self.whole else got
+            raise InvalidInput(place, got, f"at least {self.at_least:g}")
         if self.whole:
             return frozen(array.astype(np.int64))
         return frozen(np.where(missing, np.inf, array))
@@ -187,22 +194,22 @@ class MotionTable:
 class HistoryTable:
     """Progress of a search."""
 
-    best: Annotated[Any, Columns(infinite=True)]
-    iteration_best: Annotated[Any, Columns(infinite=True)]
-    mean: Annotated[Any, Columns(infinite=True)]
-    distinct: Annotated[Any, Columns(whole=True)]
+    best: Annotated[Any, Columns(infinite=True, at_least=0)]
+    iteration_best: Annotated[Any, Columns(infinite=True, at_least=0)]
+    mean: Annotated[Any, Columns(infinite=True, at_least=0)]
+    distinct: Annotated[Any, Columns(whole=True, at_least=1)]
 
 
 @settings
 class TrailsTable:
     """Edges that ants walked."""
 
-    layer: Annotated[Any, Columns(whole=True)]
-    tail: Annotated[Any, Columns(whole=True)]
-    head: Annotated[Any, Columns(whole=True)]
-    ants: Annotated[Any, Columns(whole=True)]
-    laid: Annotated[Any, Columns()]
-    pheromone: Annotated[Any, Columns()]
+    layer: Annotated[Any, Columns(whole=True, at_least=0)]
+    tail: Annotated[Any, Columns(whole=True, at_least=0)]
+    head: Annotated[Any, Columns(whole=True, at_least=0)]
+    ants: Annotated[Any, Columns(whole=True, at_least=1)]
+    laid: Annotated[Any, Columns(at_least=0)]
+    pheromone: Annotated[Any, Columns(at_least=0)]
 
 
 @settings

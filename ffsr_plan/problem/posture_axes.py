@@ -15,6 +15,8 @@ from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.setting_rules import Number, Rule, Text, WholeNumber
 from ffsr_plan.core.settings import Given, settings
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.srdf import NO_POSTURE
+from ffsr_plan.robots.urdf.joints import NO_JOINT
 
 Direction = tuple[tuple[str, float], ...]
 
@@ -117,7 +119,8 @@ class PostureAxis(_JointAxis):
         result = np.zeros_like(nominal)
         for name, value in self.joints:
             if name not in robot.joint_names:
-                raise unknown_name("lattice postures, joints", name, robot.joint_names)
+                about = "lattice postures, joints"
+                raise unknown_name(about, name, robot.joint_names, NO_JOINT)
             result[..., robot.joint_names.index(name)] = value
         return result
 
@@ -150,7 +153,8 @@ class PostureTarget(_JointAxis):
     def displacement(self, robot: SpaceRobot, nominal: Array) -> Array:
         """(..., nd) differences from nominal joint values (..., nd) to the posture."""
         if self.towards not in robot.postures:
-            raise unknown_name("lattice postures, towards", self.towards, robot.postures)
+            about = "lattice postures, towards"
+            raise unknown_name(about, self.towards, robot.postures, NO_POSTURE)
         result = np.zeros_like(nominal)
         for name, value in robot.postures[self.towards].items():
             k = robot.joint_names.index(name)

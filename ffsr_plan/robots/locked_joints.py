@@ -11,7 +11,7 @@ import numpy as np
 from ffsr_plan.core import rotations
 from ffsr_plan.core.checks import number
 from ffsr_plan.core.errors import InvalidInput, unknown_name
-from ffsr_plan.robots.urdf.joints import position_limits
+from ffsr_plan.robots.urdf.joints import NO_JOINT, position_limits
 from ffsr_plan.robots.urdf.number_texts import attribute_numbers, attribute_text, numbers
 from ffsr_plan.robots.urdf.origins import roll_pitch_yaw
 
@@ -56,7 +56,7 @@ def fix_locked_joints(
     values = {}
     for name, value in (locked or {}).items():
         if name not in joints:
-            raise unknown_name(f"{where}, locked", name, joints)
+            raise unknown_name(f"{where}, locked", name, joints, NO_JOINT)
         values[name] = _within(joints[name], value, f"{where}, locked '{name}'")
     _follow(values, mimics, joints, where)
     for name, mimic in mimics.items():
@@ -91,7 +91,7 @@ def _mimic(
             about, f"a mimic of '{name}' itself", "a mimic of another joint that moves"
         )
     if leader is None or leader not in joints:
-        raise unknown_name(f"{about} joint", leader, joints)
+        raise unknown_name(f"{about} joint", leader, joints, NO_JOINT)
     (factor,) = numbers(f"{about} multiplier", element.get("multiplier", "1"), 1)
     (offset,) = numbers(f"{about} offset", element.get("offset", "0"), 1)
     return _Mimic(leader, factor, offset)

@@ -18,15 +18,12 @@ from ffsr_plan.core.errors import InvalidInput, unknown_name
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
 from ffsr_plan.core.text_files import write_files
-from ffsr_plan.robots.collision_shapes import (
-    Containers,
-    Replacement,
-)
+from ffsr_plan.robots.collision_shapes import Containers, Replacement
 from ffsr_plan.robots.kinematics import Components, Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
-from ffsr_plan.robots.srdf import named_postures
+from ffsr_plan.robots.srdf import NO_POSTURE, named_postures
 from ffsr_plan.robots.urdf.inertias import Balanced
-from ffsr_plan.robots.urdf.joints import RateLimits
+from ffsr_plan.robots.urdf.joints import NO_JOINT, RateLimits
 
 _HALF_TURN_BAND = 1e-9  # [rad] by which rounding may miss half a turn of a continuous joint
 
@@ -214,7 +211,7 @@ class SpaceRobot:
         """
         if isinstance(joints, str):
             if joints not in self.postures:
-                raise unknown_name("joints", joints, self.postures)
+                raise unknown_name("joints", joints, self.postures, NO_POSTURE)
             joints = self.postures[joints]
         if joints is not None and not isinstance(joints, Mapping):
             allowed = "a mapping from joint names to values, or the name of a posture"
@@ -222,7 +219,7 @@ class SpaceRobot:
         values = self._nearest_to_zero()
         for name, value in (joints or {}).items():
             if name not in self.joint_names:
-                raise unknown_name("joints", name, self.joint_names)
+                raise unknown_name("joints", name, self.joint_names, NO_JOINT)
             values[self.joint_names.index(name)] = number(f"joints.{name}", value)
         self.check_limits("joints", values)
         quat = from_angles(finite_array("attitude", attitude, (3,)))
@@ -247,7 +244,7 @@ class SpaceRobot:
             InvalidInput: not a configuration of this robot; of N, the first that is not.
         """
         if np.ndim(q) == 2:
-            rows = np.asarray(q)
+            rows = [*q]  # type: ignore[misc]
             checked = np.array(
                 [self.check_configuration(f"q[{k}]", row) for k, row in enumerate(rows)]
             ).reshape(-1, self.model.nq)

@@ -62,10 +62,9 @@ class Scenario:
         """
         path = _find(source)
         what = f"scenario '{source}'"
+        text = read_text("scenario", path, "utf-8-sig")
         try:
-            data = tomllib.loads(read_text(what, path, "utf-8-sig"))
-        except InvalidInput:
-            raise
+            data = tomllib.loads(text)
         except (RecursionError, ValueError) as error:  # a TOMLDecodeError is a ValueError
             deep = isinstance(error, RecursionError)
             reason = "lists or tables nested too deeply" if deep else str(error)

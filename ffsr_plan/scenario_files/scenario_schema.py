@@ -21,6 +21,7 @@ from ffsr_plan.problem.problem import ModeName, Problem
 from ffsr_plan.robots.collision_shapes import CONTAINERS
 from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.srdf import NO_POSTURE
 from ffsr_plan.robots.urdf.inertias import INERTIA
 from ffsr_plan.robots.urdf.links import COLLISION
 from ffsr_plan.scenario_files.obstacle_tables import (
@@ -255,7 +256,8 @@ def joint_values(
     """
     if posture is None:
         return joints
-    return {**robot.postures[one_of("posture", posture, list(robot.postures))], **joints}
+    name = one_of("posture", posture, list(robot.postures), NO_POSTURE)
+    return {**robot.postures[name], **joints}
 
 
 def schema() -> dict[str, Any]:

@@ -62,19 +62,13 @@ class Scene:
             sources: see the class; the numbers sum to N.
 
         Raises:
-            InvalidInput: shapes that do not fit, not finite, or a radius <= 0, with its index.
+            InvalidInput: shapes that do not fit; or a number that is not finite, or a radius <= 0,
+                with the index of the sphere.
         """
         check_memory(
             "scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
         )
-        c = finite_array("scene centers", centers, (-1, 3), FARTHEST)
-        r = finite_array("scene radii", radii, (-1,))
-        if len(c) != len(r):
-            raise InvalidInput(
-                "scene radii", f"{len(r)} radii", f"one for each of {len(c)} centers"
-            )
-        for i in np.flatnonzero(r <= 0.0)[:1]:
-            raise InvalidInput(f"scene radii[{i}]", float(r[i]), "greater than 0 m")
+        c, r = sphere_files.checked_spheres("scene ", centers, radii, "sphere")
         object.__setattr__(self, "centers", c)
         object.__setattr__(self, "radii", r)
         object.__setattr__(self, "excess", number("scene excess", excess, at_least=0.0))

@@ -15,12 +15,14 @@ from pathlib import Path
 from typing import IO, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.checks import FARTHEST, LARGEST_NUMBER, finite_array
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput, unknown_name
-from ffsr_plan.core.text_files import read_text, write_text
+from ffsr_plan.core.text_files import read_text, reason, write_text
 
 COLUMNS = ("x", "y", "z", "radius")
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3}
@@ -31,6 +33,7 @@ _LONGEST_LINE = 10_000
 _LINES_AT_ONCE = 10_000  # of which one that is no plain number slows down the reading
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _LONGEST_HEADER = 100
+_OTHER_DELIMITERS = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces"}
 _HEADER = re.compile(r"\s*(\w+)\s*(?:\[\s*(\w+)\s*\])?\s*")
 
 
@@ -50,7 +53,7 @@ def read_csv(path: str | Path) -> tuple[Array, Array]:
         InvalidInput: names file, line, column and value.
     """
     what = f"CSV file '{path}'"
-    lines = read_text(what, checked_path("path", path), "utf-8-sig").splitlines()
+    lines = read_text("CSV file", checked_path("path", path), "utf-8-sig").splitlines()
     for line, text in enumerate(lines, start=1):
         if len(text) > _LONGEST_LINE:
             allowed = f"at most {_LONGEST_LINE} characters"
@@ -92,7 +95,9 @@ class _Table(NamedTuple):
         if numbers is None:
             return self._values_one_by_one(block, begin + 1)
         values = numbers[:, self.places] * self.scales
-        if np.all(np.isfinite(values)) and np.all(values[:, 3] > 0.0):
+        near = np.abs(values[:, :3]).max(initial=0.0) <= FARTHEST  # false for NaN
+        radii = values[:, 3]
+        if near and radii.min(initial=1.0) > 0.0 and radii.max(initial=0.0) <= LARGEST_NUMBER:
             return values
         return self._values_one_by_one(block, begin + 1)
 
@@ -112,7 +117,7 @@ class _Table(NamedTuple):
         if len(row) != self.width:
             raise InvalidInput(where, f"{len(row)} values", f"{self.width}, as in the header")
         return [
-            scale * _number(f"{where}, column {name}", name, row[place].strip())
+            _metres(f"{where}, column {name}", name, row[place].strip(), scale)
             for name, place, scale in zip(COLUMNS, self.places, self.scales, strict=True)
         ]
 
@@ -139,6 +144,31 @@ def _is_ignored(row: list[str]) -> bool:
 
 def _broken(what: str, error: csv.Error) -> InvalidInput:
     return InvalidInput(what, str(error), "a comma-separated table")
+
+
+def checked_spheres(of: str, centers: ArrayLike, radii: ArrayLike, row: str) -> tuple[Array, Array]:
+    """Check spheres.
+
+    Args:
+        of: what begins the messages, such as the name of a file.
+        centers: (N, 3) [m].
+        radii: (N,) [m].
+        row: what messages call one of the spheres.
+
+    Returns:
+        Read-only copies.
+
+    Raises:
+        InvalidInput: names the first sphere that cannot be, and its number that is wrong.
+    """
+    c = finite_array(f"{of}centers", centers, (-1, 3), FARTHEST, row)
+    r = finite_array(f"{of}radii", radii, (-1,), row=row)
+    if len(c) != len(r):
+        allowed = f"one for each of {len(c)} centers"
+        raise InvalidInput(f"{of}radii", f"{len(r)} radii", allowed)
+    for i in np.flatnonzero(r <= 0.0)[:1]:
+        raise InvalidInput(f"{of}radii, {row} {i}", float(r[i]), "greater than 0 m")
+    return c, r
 
 
 def write_csv(path: str | Path, centers: Array, radii: Array) -> None:
@@ -181,13 +211,16 @@ def read_numpy(path: str | Path) -> tuple[Array, Array]:
             centers, radii = _members(what, file)
     except InvalidInput:
         raise
+    except OSError as error:
+        raise InvalidInput("NumPy file", str(path), f"a readable file ({reason(error)})") from None
     except Exception as error:  # NumPy raises many types for a file of arbitrary content
-        raise InvalidInput(what, type(error).__name__, f"a file of numbers ({error})") from None
+        allowed = f"a file of numbers ({reason(error)})"
+        raise InvalidInput("NumPy file", str(path), allowed) from None
     if file.suffix == ".npz":
-        return centers, radii
+        return checked_spheres(f"{what}, ", centers, radii, "row")
     if table.ndim != 2 or table.shape[1] != len(COLUMNS):
         raise InvalidInput(what, f"shape {table.shape}", "shape (N, 4): x, y, z, radius")
-    return table[:, :3], table[:, 3]
+    return checked_spheres(f"{what}, ", table[:, :3], table[:, 3], "row")
 
 
 def _members(what: str, file: Path) -> tuple[Array, Array]:
@@ -227,6 +260,8 @@ def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:
     for cell in cells:
         match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_HEADER else None
         name = match.group(1) if match else cell
+        if other := _delimiter(cell):
+            raise InvalidInput(f"{what}, header", cell, f"commas between columns, not {other}")
         if name not in COLUMNS:
             raise unknown_name(f"{what}, header", cell, COLUMNS)
         if name in names:
@@ -243,9 +278,21 @@ def _header(what: str, cells: list[str]) -> tuple[list[int], list[float]]:
     return places, [units[k] for k in places]
 
 
-def _number(what: str, column: str, text: str) -> float:
-    allowed = "a finite number" + (" greater than 0" if column == "radius" else "")
-    value = float(text) if _NUMBER.fullmatch(text) else math.nan
-    if not math.isfinite(value) or (column == "radius" and value <= 0.0):
-        raise InvalidInput(what, text, allowed)
+def _delimiter(cell: str) -> str:
+    """What separates the columns of a header that no comma has split; empty if nothing does."""
+    for mark, name in _OTHER_DELIMITERS.items():
+        if sum(part.split("[")[0].strip() in COLUMNS for part in cell.split(mark)) > 1:
+            return name
+    return ""
+
+
+def _metres(what: str, column: str, text: str, unit: float) -> float:
+    """A cell in metres; `unit` is that of its column [m]."""
+    radius = column == "radius"
+    value = float(text) * unit if _NUMBER.fullmatch(text) else math.nan
+    if not math.isfinite(value) or (radius and value <= 0.0):
+        raise InvalidInput(what, text, "a finite number" + " greater than 0" * radius)
+    most = LARGEST_NUMBER if radius else FARTHEST
+    if abs(value) > most:
+        raise InvalidInput(what, text, f"at most {most:g} m")
     return value

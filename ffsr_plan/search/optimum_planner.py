@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from ffsr_plan.core.arrays import frozen
+from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import History, SearchMonitor, SearchResult, Trails
 
 
-@dataclass(frozen=True)
+@settings
 class LatticeOptimum(LatticePlanner):
     """The exact optimum as a planner; it has no parameters and ignores the seed.
 

@@ -15,6 +15,7 @@ from ffsr_plan.core.setting_rules import Number, Rule
 from ffsr_plan.core.settings import settings
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.urdf.joints import NO_JOINT
 from ffsr_plan.trajectory.straight_runs import StraightRuns
 
 _LARGEST_LIMIT = 1e9  # with larger ones thrust and delta-v would be dominated by rounding
@@ -222,6 +223,6 @@ def _joint_array(robot: SpaceRobot, what: str, value: PerJoint, default: Array) 
     values = np.array(default)
     for name, each in value.items():
         if name not in robot.joint_names:
-            raise unknown_name(what, name, robot.joint_names)
+            raise unknown_name(what, name, robot.joint_names, NO_JOINT)
         values[robot.joint_names.index(name)] = each
     return values

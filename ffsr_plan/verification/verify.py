@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ffsr_plan.core.checks import whole_number
+from ffsr_plan.core.contacts import approach
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.momentum_residual import momentum_residual, wheel_momentum_error
 from ffsr_plan.verification.recomputed_objective import AGREEMENT, Recomputed, recompute
@@ -187,15 +188,14 @@ def _collisions(plan: PlanData, swept: Swept) -> list[str]:
     if swept.clearance is not None:
         least, edge, names = swept.clearance
         if least <= 0.0:
-            depth = f"up to {-least:.3g} m inside"
-            problems.append(f"link '{names[0]}' is {depth} an obstacle on edge {edge}")
+            problems.append(f"link '{names[0]}' {approach(least)} an obstacle on edge {edge}")
     if swept.separation is not None and swept.separation.value <= 0.0:
         _, edge, names = swept.separation
         problems.append(f"two links touch on edge {edge}: '{names[0]}' and '{names[1]}'")
     if proven > least + AGREEMENT:
-        problems.append(
-            f"the plan's proven clearance is {proven:.6g} m, but {least:.6g} m was measured"
-        )
+        measured = f"{least:.6g} m" if least > 0.0 else "none"
+        stated = f"the plan's proven clearance is {proven:.6g} m"
+        problems.append(f"{stated}, but {measured} was measured")
     elif np.isinf(proven) != np.isinf(least) or proven > swept.clearance_bound + CONFIRMED:
         problems.append(f"the plan's proven clearance of {proven:.6g} m is not confirmed")
     for place, other in zip(swept.hidden, ("an obstacle", "another link"), strict=True):

@@ -164,6 +164,41 @@ def test_bad_input_is_exit_status_2(run, arguments):
     assert "Traceback" not in result.output
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("plan", "quick.toml", "--out", ""),
+        ("plan", ""),
+        ("demo", "--out", ""),
+        ("verify", ""),
+        ("view", ""),
+        ("export", "", "path.csv"),
+        ("export", "plan.json", ""),
+        ("gif", "plan.json", ""),
+        ("timed", "plan.json", "--thruster-acceleration", "0.1", "--csv", ""),
+    ],
+    ids=" ".join,
+)
+def test_an_empty_path_is_not_the_current_folder(run, tmp_path, arguments):
+    before = sorted(tmp_path.iterdir())
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert "got ''; allowed: a path that is not empty" in " ".join(result.stderr.split())
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_the_current_folder_may_be_named(run, tmp_path):
+    assert run("plan", "quick.toml", "--out", ".").exit_code == 0
+    assert {path.name for path in tmp_path.iterdir()} >= set(RESULTS)
+
+
+def test_a_plan_file_that_is_not_there_is_named_once(run, tmp_path):
+    for name, reason in (("nope.json", "No such file or directory"), (".", "Is a directory")):
+        sentence = " ".join(run("verify", name).stderr.split())
+        allowed = f"a readable UTF-8 file ({reason})"
+        assert sentence == f"ffsr-plan: plan file: got '{name}'; allowed: {allowed}"
+
+
 def test_a_limit_that_is_missing_is_exit_status_2_and_named(run):
     run("plan", "quick.toml", "--out", "results")
     result = run("timed", "results/plan.json")

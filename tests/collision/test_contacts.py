@@ -7,6 +7,7 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.collision.contacts import contacts, goal_in_collision, start_in_collision
+from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions
 from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.urdf_builders import inertial, joint, link, sphere, urdf
 
@@ -74,6 +75,24 @@ def test_advice_depends_on_what_touches(chain):
     assert "excess" not in str(goal_in_collision(chain, deep, start))
     assert "SRDF" not in str(goal_in_collision(chain, deep, start))
     assert "fp.self_collisions" in str(goal_in_collision(chain, fp.Scene(), folded))
+
+
+@pytest.mark.parametrize("depth", [0.0, 1e-16, 1e-12])
+def test_what_touches_exactly_is_to_keep_the_tolerance(chain, depth):
+    touching = fp.Scene([[0.0, 0.75, 0.0]], [0.25 + depth])
+    text = str(start_in_collision(chain, touching, chain.neutral()))
+    assert "start in collision: link 'base' touches obstacle 0; what may help: " in text
+    assert "move the base or the joints out by more than the tolerance" in text
+    deep = fp.Scene([[0.0, 0.7, 0.0]], [0.3])
+    text = str(start_in_collision(chain, deep, chain.neutral()))
+    assert "is 0.1 m inside obstacle 0" in text
+    assert "out by more than 0.1 m" in text
+
+
+def test_links_that_touch_exactly_are_shown_so():
+    pairs = [SelfCollision("a", "b", 0.1), SelfCollision("b", "c", 5e-17)]
+    robot = fp.load_robot("point")
+    assert repr(SelfCollisions(robot, pairs)).endswith("a and b by 0.1 m; b and c touch)")
 
 
 def test_joints_outside_their_limits_are_named_with_what_touches(robot):

@@ -50,6 +50,32 @@ def test_an_array_holds_numbers_only(value):
             finite_array("there", value, shape)
 
 
+MASKED = np.ma.masked_array([1.0, 2.0], mask=[False, True])
+
+
+@pytest.mark.parametrize(
+    ("value", "shape"),
+    [(MASKED, (2,)), ([MASKED, [3.0, 4.0]], (2, 2)), (MASKED[1], ()), ([1.0, MASKED[1]], (2,))],
+    ids=["array", "row", "number", "entry"],
+)
+@pytest.mark.filterwarnings("ignore:Warning. converting a masked element")
+def test_masked_numbers_are_not_used(value, shape):
+    with pytest.raises(InvalidInput, match=r"^there: got .*none of them masked"):
+        finite_array("there", value, shape)
+    assert np.all(finite_array("there", np.ma.masked_array([1.0, 2.0]), (2,)) == [1.0, 2.0])
+
+
+def test_of_a_long_array_the_first_wrong_number_is_named():
+    values = np.zeros((20, 3))
+    values[7, 2] = values[9, 0] = np.nan
+    with pytest.raises(InvalidInput, match=r"^there, entry 7: got nan; allowed: a finite number"):
+        finite_array("there", values, (-1, 3))
+    with pytest.raises(InvalidInput, match=r"^there, row 7: got nan"):
+        finite_array("there", values[:, 2], (-1,), row="row")
+    with pytest.raises(InvalidInput, match=r"^there: got \[0\.0, nan\]; allowed: finite numbers"):
+        finite_array("there", [0.0, np.nan], (2,))
+
+
 @pytest.mark.parametrize(
     "value", [[1, 2.5], (np.float32(1.0), 2), np.array([1, 2]), np.array([1, 2.5], dtype=object)]
 )

@@ -65,7 +65,16 @@ def test_invalid_input_is_a_value_error():
             r"link 'a' is 0.1 m inside link 'b'; the goal is in collision too: link 'a' .*; "
             "what may help: move$",
         ),
-        (errors.UnprovenPath(3, "a", 5, 0.1, 40, "x.stl"), r"of x.stl \(sphere 5\); what may"),
+        (
+            errors.UnprovenPath(3, "a", 5, 0.1, 40, "x.stl"),
+            r"link 'a' comes within 0.1 m of x.stl \(sphere 5\); what may",
+        ),
+        (
+            errors.UnprovenPath(3, "a", 5, -0.2438, 40, "x.stl"),
+            r"link 'a' is 0.2438 m inside x.stl \(sphere 5\); what may",
+        ),
+        (errors.UnprovenPath(3, "a", "b", -5e-17, 40), "link 'a' touches link 'b'; what may"),
+        (errors.StartInCollision("a", 3, 5.55e-17), "start .*: link 'a' touches obstacle 3$"),
         (
             errors.PoseOutOfReach("t", 0.1, None, np.zeros(7), errors.HeldBase(True, 0.1, 0.05)),
             r"within reach of a held base, .* by 5\.73 degrees and takes the frame 0\.05 m away",
@@ -88,6 +97,28 @@ def test_messages_say_what_happened(error, message):
 def test_the_most_similar_name_is_suggested():
     error = errors.unknown_name("robot", "pont", ["point", "satellite"])
     assert "did you mean 'point'?" in str(error)
+
+
+@pytest.mark.parametrize(
+    ("value", "names", "nearest"),
+    [
+        ("radios", ["name", "radius"], "radius"),
+        ("Fig2A", ["fig2a", "fig2b"], "fig2a"),
+        ("ants", ["ant-system", "max-min-ant-system"], "ant-system"),
+        ("cvs", ["center", "csv"], "csv"),
+        ("diameter", ["name", "radius"], None),
+        ("ants", ["name"], None),
+        ("stowed", [], None),
+    ],
+)
+def test_a_name_is_suggested_only_where_it_is_close(value, names, nearest):
+    assert errors.nearest_name(value, names) == nearest
+    assert ("did you mean" in str(errors.unknown_name("x", value, names))) == (nearest is not None)
+
+
+def test_where_there_is_no_name_the_message_says_so():
+    assert str(errors.unknown_name("x", "a", [], "no joint")).endswith("allowed: no joint")
+    assert str(errors.unknown_name("x", "a", ["b"], "no joint")).endswith("allowed: b")
 
 
 def test_a_message_is_one_short_line_whatever_it_quotes():

@@ -99,6 +99,10 @@ def test_a_missing_file_names_what_was_searched(workspace, monkeypatch):
         assert part in str(caught.value)
     with pytest.raises(fp.InvalidInput, match="nothing is downloaded from https://"):
         found("https://a.b/c.stl", [folder], "robot")
+    with pytest.raises(fp.InvalidInput, match=rf"an existing file \(looked for in {folder}\)$"):
+        found("a.stl", [folder], "robot")
+    with pytest.raises(fp.InvalidInput, match=r"an existing file \(there is none\)$"):
+        found("/nowhere/a.stl", [folder], "robot")
     assert find("a" * 5000, [folder]) is None
     assert find("package://" + "a/" * 3000, [folder]) is None
 

@@ -198,7 +198,7 @@ def test_the_winding_number_is_one_inside_and_zero_outside():
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ({"mesh": "nowhere.stl"}, r"mesh: got '.*nowhere\.stl'; allowed: a file"),
+        ({"mesh": "nowhere.stl"}, r"mesh: got '.*nowhere\.stl'; allowed: an existing file"),
         ({"mesh": 3}, r"mesh: got 3; allowed: a path, or an object with triangles"),
         ({"excess": 0.0}, r"excess: got 0\.0; .*greater than 0"),
         ({"excess": 1e-5}, r"excess: got 1e-05; allowed: about 0\.00\d+ m or more for its size"),

@@ -121,7 +121,7 @@ def test_a_file_that_is_no_plan_is_refused(tmp_path):
         (tmp_path / "plan.json").write_text(text)
         with pytest.raises(fp.InvalidInput, match="format 'ffsr-plan/3'"):
             fp.Plan.load(tmp_path / "plan.json")
-    with pytest.raises(fp.InvalidInput, match="FileNotFoundError"):
+    with pytest.raises(fp.InvalidInput, match="No such file"):
         fp.Plan.load(tmp_path / "missing.json")
 
 

@@ -102,6 +102,39 @@ FORGED = [
     (lambda d: d["certificate"].update(edge_queries=-2), "edge_queries: got -2"),
     (lambda d: d["certificate"].update(least_clearance=-0.5), "least_clearance: got -0.5"),
     (lambda d: d["nodes"].__setitem__(3, 999), "nodes, lateral: got 999"),
+    (lambda d: d["certificate"].update(edges_free=39), "edges_free: got 39; allowed: at least 40"),
+    (lambda d: d["trails"]["ants"].__setitem__(0, -5), "trails.ants.0: got -5; allowed: at least"),
+    (lambda d: d["trails"]["laid"].__setitem__(3, -1.0), "trails.laid.3: got -1.0"),
+    (lambda d: d["trails"]["pheromone"].__setitem__(1, -0.1), "trails.pheromone.1: got -0.1"),
+    (lambda d: d["trails"]["tail"].__setitem__(1, -1), "trails.tail.1: got -1"),
+    (lambda d: d["trails"]["head"].__setitem__(1, 10**6), "trails.head: got 1000000; allowed: 0"),
+    (
+        lambda d: [column.append(column[0]) for column in d["trails"].values()],
+        r"trails: got \(0, .*; allowed: each edge .* once",
+    ),
+    (lambda d: d["history"]["distinct"].__setitem__(2, -1), "history.distinct.2: got -1"),
+    (lambda d: d["history"]["distinct"].__setitem__(2, 31), "distinct.2: got 31; allowed: at most"),
+    (
+        lambda d: d["history"].update(best=[0.0 for _ in d["history"]["best"]]),
+        "history.best.0: got 0.0; allowed: at least lattice_objective",
+    ),
+    (
+        lambda d: d["history"]["best"].__setitem__(-1, 0.999 * d["lattice_objective"]),
+        "history.best.[0-9]+: got .*; allowed: at least lattice_objective",
+    ),
+    (
+        lambda d: d["history"]["best"].__setitem__(-1, 2.0 * d["history"]["best"][0]),
+        "history.best.[0-9]+: got .*; allowed: at most that of the cycle before",
+    ),
+    (
+        lambda d: d["history"]["best"].__setitem__(-1, None),
+        "history.best.[0-9]+: got inf; allowed: at most that of the cycle before",
+    ),
+    (
+        lambda d: d["history"]["iteration_best"].__setitem__(0, 0.5 * d["history"]["best"][0]),
+        "history.best.0: got .*; allowed: at most history.iteration_best",
+    ),
+    (lambda d: d["history"]["mean"].__setitem__(0, -1.0), "history.mean.0: got -1.0"),
     (
         lambda d: d["problem"]["robot"].update(disabled_pairs=[["base", "left_link_2"]]),
         "disabled_pairs: got.*those of its SRDF",
@@ -142,6 +175,10 @@ FIELDS = [
     (lambda d: d["problem"]["scene"].update(radius=[]), "unknown key: got 'problem.scene.radius'"),
     (lambda d: d["problem"]["lattice"]["lateral"].update(width=1), "lattice.lateral.width'"),
     (lambda d: d["planner"].update(ant=1), "unknown key: got 'planner.ant'.*did you mean"),
+    (
+        lambda d: d.update(planner={"name": "lattice-optimum", "ants": 30}),
+        "unknown key: got 'planner.ants'; allowed: no key",
+    ),
     (lambda d: d["certificate"].pop("edges_free"), "certificate.edges_free: got None"),
     (lambda d: d.update(optimum="1"), "optimum: got '1'; allowed: a finite number"),
     (lambda d: d.update(length=True), "length: got True"),
@@ -173,6 +210,13 @@ def test_a_key_that_is_there_twice_is_refused(fig2a_plan, tmp_path):
     path.write_text(path.read_text().rstrip()[:-1] + ',"length": 1.0}')
     with pytest.raises(fp.InvalidInput, match="key 'length': got 'two values'"):
         fp.Plan.load(path)
+
+
+def test_a_plan_file_that_cannot_be_read_is_named_once(tmp_path):
+    for path, reason in ((tmp_path / "no.json", "No such file or"), (tmp_path, "Is a directory")):
+        message = rf"^plan file: got '{path}'; allowed: a readable UTF-8 file \({reason}"
+        with pytest.raises(fp.InvalidInput, match=message):
+            fp.Plan.load(path)
 
 
 def test_a_byte_order_mark_is_no_change(fig2a_plan, tmp_path):

@@ -7,6 +7,7 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.problem.posture_axes import PostureTarget
+from ffsr_plan.robots.loading import robot_from_urdf
 
 
 def test_both_kinds_are_posture_axes():
@@ -56,3 +57,25 @@ def test_a_wrong_posture_is_found_when_the_problem_is_made(robot):
     for goal in (robot.configuration((1, 0, 0)), robot.neutral()):  # also where nothing moves
         with pytest.raises(fp.InvalidInput, match="did you mean 'stowed'"):
             fp.Problem(robot, fp.Scene(), robot.neutral(), goal, lattice=lattice)
+
+
+def test_a_robot_without_postures_or_joints_is_said_to_have_none(robot, point):
+    robot = robot_from_urdf(robot.urdf, "made")
+    goal = robot.configuration((1, 0, 0))
+    towards = fp.Lattice(4, postures=[fp.PostureAxis.towards("stowed", 2)])
+    moving = fp.Lattice(4, postures=[fp.PostureAxis({"left_1": 1.0}, 2, 0.1)])
+    assert not robot.postures
+    assert not point.joint_names
+    cases = {
+        "no posture, as no <group_state>": lambda: fp.Problem(
+            robot, fp.Scene(), robot.neutral(), goal, lattice=towards
+        ),
+        "no posture, as": lambda: robot.configuration(joints="stowed"),
+        "no joint, as none": lambda: fp.Problem(
+            point, fp.Scene(), point.neutral(), point.configuration((1, 0, 0)), lattice=moving
+        ),
+        "no joint, as": lambda: point.configuration(joints={"left_1": 0.0}),
+    }
+    for allowed, case in cases.items():
+        with pytest.raises(fp.InvalidInput, match=f"got '(stowed|left_1)'; allowed: {allowed}"):
+            case()

@@ -177,3 +177,25 @@ def test_virtual_and_fixed_joints_in_a_state_are_ignored():
     assert robot_from_urdf(CHAIN, "made", srdf=f"<robot>{state}</robot>").postures == {
         "n": {"j3": 1.0}
     }
+
+
+def states(*named):
+    lines = (
+        f"<group_state name='{name}' group='{group}'><joint name='{j}' value='{value}'/>"
+        "</group_state>"
+        for name, group, j, value in named
+    )
+    return f"<robot name='made'>{''.join(lines)}</robot>"
+
+
+def test_states_of_one_name_contradict_one_another_nowhere():
+    split = states(("a", "g", "j1", 1), ("a", "h", "j2", 2), ("a", "both", "j1", 1))
+    robot = robot_from_urdf(CHAIN, "made", srdf=split)
+    assert robot.postures == {"a": {"j1": 1.0, "j2": 2.0}}
+    for text, message in {
+        states(("a", "g", "j1", 1), ("a", "g", "j1", 2)): "'a': got 'two of them'; allowed: one",
+        states(("a", "g", "j1", 1), ("a", "g", "j2", 1)): "'a': got 'two of them'; allowed: one",
+        states(("a", "g", "j1", 1), ("a", "h", "j1", 2)): "'a', joint 'j1': got '1 and 2'",
+    }.items():
+        with pytest.raises(fp.InvalidInput, match=f"made, SRDF, group_state {message}"):
+            robot_from_urdf(CHAIN, "made", srdf=text)

@@ -109,7 +109,7 @@ def test_obstacles_come_from_files_beside_the_scenario(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ('csv = "nowhere.csv"', r"obstacles\.0: CSV file '.*nowhere\.csv'.*No such file"),
+        ('csv = "nowhere.csv"', r"obstacles\.0: CSV file: got '.*nowhere\.csv'.*No such file"),
         ('mesh = "nowhere.stl"\nexcess = 0.1', r"obstacles\.0: mesh: got '.*nowhere\.stl'"),
         ('mesh = "bus.stl"', r"obstacles\.0\.excess.*required"),
         (

@@ -45,6 +45,12 @@ def test_a_header_alone_is_an_empty_scene(tmp_path):
         ("x,y,z,radius\n1,2,3,-0.1\n", r"line 2, column radius: got '-0.1'; .*greater than 0"),
         ("x,y,z,radius\n1,nan,3,0.1\n", r"line 2, column y: got 'nan'"),
         ("x,y,z,radius\n1,,3,0.1\n", r"line 2, column y: got ''"),
+        ("x,y,z,radius\n1,1e6,3,.1\n", r"line 2, column y: got '1e6'; allowed: at most 100000 m"),
+        ("x,y,z [km],radius\n1,2,300,.1\n", r"line 2, column z: got '300'; allowed: at most 1000"),
+        ("x,y,z,radius\n1,2,3,1e10\n", r"line 2, column radius: got '1e10'; .*at most 1e\+09 m"),
+        ("x;y;z;radius\n1;2;3;4\n", r"header: got 'x;y;z;radius'; .*commas .*, not semicolons$"),
+        ("x\ty\tz\tradius\n", r"header: got .*; allowed: commas between columns, not tabs$"),
+        ("x [mm] y z radius\n", r"header: got .*; allowed: commas between columns, not spaces$"),
         ("x,y,z,radius\n1,2,3\n", r"line 2: got '3 values'; allowed: 4, as in the header"),
     ],
 )
@@ -120,10 +126,27 @@ def test_a_mistake_in_a_numpy_file_is_named(tmp_path):
         "three.npy": r"three\.npy': got 'shape \(5, 3\)'; allowed: shape \(N, 4\)",
         "objects.npy": r"objects\.npy': got 'numbers of the kind object'",
         "half.npz": r"half\.npz': got 'centers'; allowed: arrays centers and radii",
-        "nowhere.npy": r"nowhere\.npy': got 'FileNotFoundError'",
+        "nowhere.npy": r"^NumPy file: got '.*nowhere\.npy'; allowed: .*\(No such file or dir",
         "scene.txt": r"path: got .*scene\.txt'; allowed: a path that ends in \.npy or \.npz",
-        "flat.npy": r"scene radii\[0\]: got 0\.0",
+        "flat.npy": r"flat\.npy', radii, row 0: got 0\.0",
     }.items():
+        with pytest.raises(fp.InvalidInput, match=message):
+            fp.Scene.from_numpy(tmp_path / name)
+
+
+def test_a_wrong_number_in_a_numpy_file_is_named_with_its_row(tmp_path):
+    table = np.ones((4000, 4))
+    table[3000] = 1.0, np.inf, 3.0, 0.1
+    np.save(tmp_path / "far.npy", table)
+    np.savez(tmp_path / "far.npz", centers=table[:, :3], radii=table[:, 3])
+    table[3000] = 1.0, 2.0, 3.0, np.nan
+    np.save(tmp_path / "wide.npy", table)
+    for name, column, value in (
+        ("far.npy", "centers", "inf"),
+        ("far.npz", "centers", "inf"),
+        ("wide.npy", "radii", "nan"),
+    ):
+        message = rf"^NumPy file '.*{name}', {column}, row 3000: got {value}; allowed: a finite num"
         with pytest.raises(fp.InvalidInput, match=message):
             fp.Scene.from_numpy(tmp_path / name)
 

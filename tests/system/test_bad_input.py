@@ -85,8 +85,36 @@ def test_what_is_not_finite_is_refused_everywhere(robot, bad):
 
 @pytest.mark.parametrize("radius", [0.0, -0.1])
 def test_a_radius_of_zero_or_less_is_refused_with_its_index(radius):
-    with pytest.raises(fp.InvalidInput, match=r"radii\[1\].*greater than 0"):
+    with pytest.raises(fp.InvalidInput, match=r"radii, sphere 1: got .*greater than 0"):
         fp.Scene([[0, 0, 0], [1, 0, 0]], [0.5, radius])
+
+
+@pytest.mark.parametrize("bad", [np.nan, -np.inf, 1e6])
+def test_a_wrong_coordinate_is_refused_with_the_index_of_its_sphere(bad):
+    for count, at in ((1, 0), (5000, 3000)):
+        centers = np.zeros((count, 3))
+        centers[at, 1] = bad
+        message = rf"^scene centers, sphere {at}: got {bad}; allowed: a finite number of at most 1"
+        with pytest.raises(fp.InvalidInput, match=message):
+            fp.Scene(centers, np.ones(count))
+
+
+def test_masked_numbers_are_refused_wherever_arrays_are_taken(robot, fig2a_plan):
+    flight = fig2a_plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01)
+    masked = np.ma.masked_array([0.1, 0.2, 0.3], mask=[0, 1, 0])
+    rows = np.ma.masked_array(np.tile(robot.neutral(), (2, 1)))
+    rows[1, 0] = np.ma.masked
+    cases = {
+        "scene centers": lambda: fp.Scene(masked[None], [1.0]),
+        "s:": lambda: fig2a_plan.at(masked),
+        "times": lambda: flight.at(masked),
+        "position": lambda: robot.configuration(masked),
+        r"q\[1\]": lambda: robot.components(rows),
+        "start": lambda: fp.Problem(**arguments(robot, start=rows[1])),
+    }
+    for what, case in cases.items():
+        with pytest.raises(fp.InvalidInput, match=rf"^{what}.*none of them masked$"):
+            case()
 
 
 def test_centers_and_radii_must_match():

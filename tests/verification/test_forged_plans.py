@@ -68,6 +68,7 @@ def test_verification_finds_an_obstacle_unknown_to_planning(fig2a_plan):
     report = moved(fig2a_plan, problem=with_changes(problem, scene=scene)).verify(200)
     assert not report.ok
     assert "inside an obstacle" in " ".join(report.problems)
+    assert " -" not in " ".join(report.problems)  # no negative distances
 
 
 def test_verification_notices_a_base_that_does_not_react(fig2a_plan):

@@ -16,6 +16,8 @@ from ffsr_plan.robots.urdf.origins import add_origin, lengths
 from ffsr_plan.robots.urdf.xml_reading import is_comment, placed_errors, refused
 
 JOINTS = ("revolute", "continuous", "prismatic", "fixed")
+NO_JOINT = "no joint, as none of the robot's joints moves"
+"""What messages allow where the name of a joint is wrong and there is none."""
 _AT_LEAST_ZERO = ("effort", "velocity")
 _ABOVE_ZERO = ("acceleration", "deceleration", "jerk")
 _OF_MIMIC = {"multiplier": "1", "offset": "0"}
