@@ -6,10 +6,13 @@ import sys
 import threading
 import time
 
+import numpy as np
 import pytest
 
 from ffsr_plan.core.kernels import announcement, compiling_time
 from ffsr_plan.core.kernels.compiling_time import Stopwatch, add_compiled
+from ffsr_plan.search.records import SearchRequest
+from ffsr_plan.search.workers import run_on_workers
 
 PROGRAM = """
 import time
@@ -26,7 +29,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.slow
-def test_seconds_leave_out_compiling_in_workers_too(tmp_path):
+def test_seconds_leave_out_compiling_which_is_announced_once(tmp_path):
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     run = subprocess.run(
         [sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True
@@ -38,6 +41,16 @@ def test_seconds_leave_out_compiling_in_workers_too(tmp_path):
     assert seconds == pytest.approx(whole - compiling, abs=0.1)
     assert second[2] == 0.0
     assert run.stderr.count("compiling numerical kernels") == 1
+
+
+def test_of_workers_the_one_that_compiled_longest_counts():
+    def run(job, rngs, monitor):
+        add_compiled(job * len(rngs))
+        return [None] * len(rngs)
+
+    watch, rngs = Stopwatch(), np.random.default_rng(0).spawn(3)
+    assert run_on_workers(run, 2.0, rngs, SearchRequest(colonies=3, workers=2)) == [None] * 3
+    assert watch.compiling == 4.0
 
 
 def test_nested_kernels_count_once(monkeypatch):
