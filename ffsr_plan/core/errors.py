@@ -310,6 +310,47 @@ class UnprovenPath(PlanningError):
 
 
 @dataclass(eq=False, repr=False)
+class PathNotFound(PlanningError):
+    """No path was found without a lattice; this does not prove that none exists.
+
+    Attributes:
+        seconds: time that was spent [s].
+        tries: number of searches by trees.
+        nodes: nodes of all trees.
+        meetings: how often a tree from the start met one from the goal.
+        refused: how often a path was found that could not be proven free.
+        apart: distance at which the last trees came nearest to each other, in which a metre counts
+            as much as 1.7 rad [m].
+        contact: what is in the way there; None where it is not known.
+        advice: what may help.
+    """
+
+    seconds: float
+    tries: int
+    nodes: int
+    meetings: int
+    refused: int
+    apart: float
+    contact: Contact | None = None
+    advice: tuple[str, ...] = ()
+
+    def message(self) -> str:
+        """What was tried, what is in the way, and what may help."""
+        proof = f", {self.refused} paths could not be proven free" if self.refused else ""
+        way = ""
+        if self.contact is not None:
+            link, obstacle, depth, source = self.contact
+            name = obstacle_name(obstacle, source)
+            way = f"; where the trees came nearest, {self.apart:.3g} m apart, link '{link}' "
+            way += f"is {-depth:.3g} m from {name}"
+        return (
+            f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
+            f"nodes, {self.meetings} meetings of the trees from start and goal{proof}{way}"
+            + _helping(self.advice)
+        )
+
+
+@dataclass(eq=False, repr=False)
 class WorkerDied(PlanningError):
     """A worker process ended without a result.
 

@@ -127,7 +127,7 @@ def _prescribed(
     """(N, nv) velocities and accelerations, zero where the base reacts."""
     step = np.hstack([np.zeros((len(edge), 6)), np.diff(motion.joint_values, axis=0)[edge]])
     if motion.mode.has_wheels:
-        step[:, 3:6] = motion.turn
+        step[:, 3:6] = motion.turns[edge]
     v, a = step * pace[:, None], step * acceleration[:, None]
     if motion.mode.has_thrusters:
         base_step = motion.base_steps()[edge]

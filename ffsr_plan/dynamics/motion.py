@@ -34,6 +34,8 @@ class Motion:
         joint_values: (m + 1, nd) at the corners [rad or m].
         attitudes: (m + 1, 4) base attitude at the corners (xyzw), reaction included.
         joints_are_straight: whether the joints follow one straight line from start to goal.
+        turn_shares: (m + 1,) share of the rotation from start to goal at each corner, where wheels
+            hold the attitude; None where the base turns steadily, or reacts.
     """
 
     def __init__(
@@ -44,6 +46,7 @@ class Motion:
         goal: Array,
         positions: Array,
         joint_values: Array | None = None,
+        turn_shares: Array | None = None,
     ) -> None:
         """The motion from `start` to `goal` (nq,) through base positions (m + 1, 3).
 
@@ -58,6 +61,8 @@ class Motion:
             positions: (m + 1, 3) base origin at the corners, world [m].
             joint_values: (m + 1, nd) at the corners; without them the joints move steadily from
                 start to goal, continuous ones the shorter way round.
+            turn_shares: (m + 1,) share of the rotation from start to goal that wheels have turned the
+                base by at each corner, from 0 to 1; without it the base turns steadily.
 
         Raises:
             InvalidInput: an argument of another kind, shape or size, or not finite.
@@ -76,6 +81,12 @@ class Motion:
         self._start, self._goal = start[3:7], goal[3:7]
         self._origin = start[:3]
         self._progress = np.arange(len(positions)) / (len(positions) - 1)
+        if turn_shares is not None:
+            turn_shares = finite_array("turn_shares", turn_shares, (len(positions),))
+            if turn_shares[0] != 0.0 or turn_shares[-1] != 1.0:
+                allowed = "shares from 0 at the first corner to 1 at the last"
+                raise InvalidInput("turn_shares", turn_shares.tolist(), allowed)
+        self.turn_shares = turn_shares
         self.joints_are_straight = joint_values is None
         if joint_values is None:
             travel = robot.joint_change(start, goal)
@@ -114,9 +125,12 @@ class Motion:
         return self.reaction.attitudes(self._start)
 
     @property
-    def turn(self) -> Array:
-        """(3,) angular velocity of a base that does not react, base axes [rad per edge]."""
-        return rotations.rotation_vector(self._start, self._goal) / self.edges
+    def turns(self) -> Array:
+        """(m, 3) angular velocity of a base that does not react, base axes [rad per edge]."""
+        whole = rotations.rotation_vector(self._start, self._goal)
+        if self.turn_shares is None:
+            return np.tile(whole / self.edges, (self.edges, 1))
+        return np.asarray(np.diff(self.turn_shares)[:, None] * whole)
 
     def displaced(self, offsets: Array) -> Motion:
         """The same motion with the base displaced; its attitudes and joints do not change.
@@ -186,6 +200,8 @@ class Motion:
             (N, 4) quaternions (xyzw).
         """
         if not self.mode.attitude_reacts:
+            if self.turn_shares is not None:
+                progress = np.interp(progress, self._progress, self.turn_shares)
             return rotations.slerp(self._start, self._goal, progress)
         if self.joints_are_straight:
             turned = self.reaction.rotation(np.zeros(len(progress), dtype=np.int64), progress)

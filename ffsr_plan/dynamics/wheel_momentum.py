@@ -106,8 +106,7 @@ def momentum_along(motion: Motion, edge: IntArray, time: Array) -> Array:
     """(N, 3) momentum of base and arms about the centre of mass, base axes [kg m^2 rad / edge]."""
     steps = np.diff(motion.joint_values, axis=0)[edge]
     maps = angular_maps(motion.robot, motion.joint_values[edge] + time[:, None] * steps)
-    angular_velocity = np.broadcast_to(motion.turn, (len(edge), 3))
-    return turned(maps, np.concatenate([angular_velocity, steps], axis=1))
+    return turned(maps, np.concatenate([motion.turns[edge], steps], axis=1))
 
 
 def _checked_times(times: ArrayLike, duration: float) -> Array:

@@ -44,7 +44,7 @@ class LayeredLattice:
     def __init__(self, problem: Problem) -> None:
         check_lattice(problem)
         self.problem = problem
-        lattice = problem.lattice
+        lattice = problem.given_lattice
         axes = [getattr(lattice, name) for name in lattice.axes]
         counts = [np.arange(-a.half_count, a.half_count + 1) for a in axes]
         grids = np.meshgrid(*counts, indexing="ij")
@@ -72,7 +72,7 @@ class LayeredLattice:
     @property
     def divisions(self) -> int:
         """m, the number of edges of a path."""
-        return self.problem.lattice.divisions
+        return self.problem.given_lattice.divisions
 
     @property
     def size(self) -> int:

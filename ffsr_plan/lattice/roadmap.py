@@ -41,10 +41,10 @@ class Roadmap:
                 offsets.
         """
         check_lattice(problem)
-        if problem.lattice.postures:
+        if problem.given_lattice.postures:
             raise InvalidInput(
                 "lattice postures",
-                len(problem.lattice.postures),
+                len(problem.given_lattice.postures),
                 "none: with them a node has no single attitude, which a roadmap needs",
             )
         self.problem = problem

@@ -23,6 +23,7 @@ from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
 from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
+from ffsr_plan.tree_search.tree_planner import TreePlanner
 
 _NOTABLE = 1e-4  # [rad] or [m]
 _HOW_TO_REACH_IT = (
@@ -40,6 +41,7 @@ def plan(
     colonies: int = 1,
     workers: int = 1,
     time_limit: float | None = None,
+    until: Literal["end", "first"] = "end",
     on_cycle: OnCycle | None = None,
     on_interrupt: Literal["return", "raise"] = "return",
 ) -> Plan:
@@ -51,8 +53,8 @@ def plan(
 
     Args:
         problem: what to plan.
-        planner: settings of the planner, or its name; by default `PostureAnnealing()` on a lattice
-            with posture axes and `MaxMinAntSystem()` on any other.
+        planner: settings of the planner, or its name; by default `TreePlanner()` without a
+            lattice, `PostureAnnealing()` on one with posture axes, `MaxMinAntSystem()` on others.
         seed: a whole number >= 0, or a generator. The same seed gives the same plan, bit for bit,
             whatever the number of workers.
         refine: whether to move the path off the lattice in the end, see `refine`; by default on
@@ -60,7 +62,10 @@ def plan(
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
         time_limit: [s] for the search alone, without set-up, optimum and refinement.
-        on_cycle: called with a `Cycle` after each cycle; for a single colony.
+        until: `first` ends the search with the first path that is proven free, where there is no
+            lattice.
+        on_cycle: called with a `Cycle` after each cycle, for a single colony; without a lattice,
+            with a `TreeCycle` after each round.
         on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
 
     Raises:
@@ -69,6 +74,7 @@ def plan(
         NoPath: the lattice holds no free path, with the layer that cannot be passed.
         AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; `best` is
             the plan that misses it least.
+        PathNotFound: no path was found without a lattice, with what is in the way.
         UnprovenPath: with posture axes, the path found could not be proven free.
         PlanningError: no path was found in time.
         WorkerDied: a worker process ended without a result.
@@ -76,8 +82,9 @@ def plan(
     watch = Stopwatch()
     chosen = _planner_for(problem, planner)
     rng, seed_number = _generator(seed)
-    request = _request(chosen, refine, colonies, workers, time_limit, on_cycle)
-    check_colonies(problem, request.colonies)
+    request = _request(chosen, refine, colonies, workers, time_limit, until, on_cycle)
+    if problem.lattice is not None:
+        check_colonies(problem, request.colonies)
     certified = partial(_certified, problem, chosen, seed_number, watch)
     try:
         with Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE))) as interruption:
@@ -110,8 +117,9 @@ def refine(plan: Plan) -> Plan:
     """
     if not isinstance(plan, Plan):
         raise InvalidInput("plan", plan, "a Plan")
-    if plan.problem.lattice.postures:
-        raise InvalidInput("plan", plan.problem.lattice, "a plan on a lattice without posture axes")
+    lattice = plan.problem.lattice
+    if lattice is None or plan.lattice is None or lattice.postures:
+        raise InvalidInput("plan", lattice, "a plan on a lattice without posture axes")
     nominal = plan.lattice.nominal
     prover = Prover(nominal, plan.problem.scene, plan.problem.tolerance)
     offsets = plan.motion.positions - nominal.positions
@@ -137,6 +145,7 @@ def _request(
     colonies: int,
     workers: int,
     time_limit: float | None,
+    until: str,
     on_cycle: OnCycle | None,
 ) -> SearchRequest:
     if on_cycle is not None and not callable(on_cycle):
@@ -148,6 +157,9 @@ def _request(
         raise InvalidInput("on_cycle", on_cycle, f"None with {planner.name}: it has no cycles")
     if on_cycle is not None and count > 1:
         raise InvalidInput("on_cycle", on_cycle, "a callback only where colonies = 1")
+    first = one_of("until", until, ("end", "first")) == "first"
+    if first and not isinstance(planner, TreePlanner):
+        raise InvalidInput("until", until, f"'end' with {planner.name}, or a problem without lattice")
     seconds = math.inf if time_limit is None else number("time_limit", time_limit, above=0.0)
     return SearchRequest(
         refine=None if refine is None else truth("refine", refine),
@@ -155,6 +167,7 @@ def _request(
         workers=whole_number("workers", workers, at_least=1, at_most=_MOST_WORKERS),
         time_limit=seconds,
         on_cycle=on_cycle,
+        first=first,
     )
 
 

@@ -21,7 +21,7 @@ from ffsr_plan.problem.objective import motion_objective
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.edge_clearances import EdgeClearances
-from ffsr_plan.search.records import History, Trails
+from ffsr_plan.search.records import Branches, History, Trails
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -52,7 +52,7 @@ class PlanData:
     problem: Problem
     planner: Planner
     seed: int | None
-    lattice: LayeredLattice
+    lattice: LayeredLattice | None
     motion: Motion
     nodes: IntArray
     length: float
@@ -61,7 +61,7 @@ class PlanData:
     optimum: float
     clearances: Array
     history: History
-    trails: Trails
+    trails: Trails | Branches
     certificate: Certificate
     interrupted: bool
     seconds: float
@@ -102,7 +102,8 @@ class PlanData:
         With posture axes the cost of a node depends on the path that leads to it, and `gap` is the
         distance from a bound that no path of the lattice falls below.
         """
-        return not self.problem.lattice.postures
+        lattice = self.problem.lattice
+        return lattice is not None and not lattice.postures
 
     @property
     def arrival_attitude(self) -> Array:

@@ -1,4 +1,4 @@
-"""The planners by name, and the default for a lattice."""
+"""The planners by name, and the default for a lattice or none."""
 
 from __future__ import annotations
 
@@ -10,15 +10,19 @@ from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
 from ffsr_plan.search.optimum_planner import LatticeOptimum
 from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
+from ffsr_plan.tree_search.tree_planner import TreePlanner
 
-Planner = AntSystem | MaxMinAntSystem | LatticeOptimum | PostureAnnealing
+Planner = AntSystem | MaxMinAntSystem | LatticeOptimum | PostureAnnealing | TreePlanner
 PLANNERS: dict[str, type[Planner]] = {
-    kind.name: kind for kind in (AntSystem, MaxMinAntSystem, LatticeOptimum, PostureAnnealing)
+    kind.name: kind
+    for kind in (AntSystem, MaxMinAntSystem, LatticeOptimum, PostureAnnealing, TreePlanner)
 }
 
 
-def default_planner(lattice: Lattice) -> Planner:
-    """`PostureAnnealing` on a lattice with posture axes, otherwise `MaxMinAntSystem`."""
+def default_planner(lattice: Lattice | None) -> Planner:
+    """`TreePlanner` without a lattice, `PostureAnnealing` with posture axes, or `MaxMinAntSystem`."""
+    if lattice is None:
+        return TreePlanner()
     return PostureAnnealing() if lattice.postures else MaxMinAntSystem()
 
 

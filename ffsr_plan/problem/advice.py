@@ -26,8 +26,8 @@ def against_obstacles(problem: Problem, ends: tuple[float, float]) -> tuple[str,
     if near:
         return tuple(near)
     advice = [*_offsets(problem)]
-    if problem.lattice.axes:
-        advice.append(f"more than {problem.lattice.divisions} divisions")
+    if problem.given_lattice.axes:
+        advice.append(f"more than {problem.given_lattice.divisions} divisions")
     if problem.robot.nd:
         only = "" if advice else ": this lattice holds one path, and divisions do not change it"
         advice.append(f"posture axes (lattice.postures), by which the joints give way{only}")
@@ -55,16 +55,16 @@ def for_proof(problem: Problem, cut_short: bool, links: bool) -> tuple[str, ...]
     advice = ["a longer time_limit, which ended the search"] if cut_short else []
     advice += ["another seed", "more annealing_shifts"]
     advice += [] if links else _offsets(problem)
-    for k, axis in enumerate(problem.lattice.postures):
+    for k, axis in enumerate(problem.given_lattice.postures):
         advice.append(f"lattice.postures.{k}, {_of_posture_axis(axis)}")
-    return (*advice, f"more than {problem.lattice.divisions} divisions")
+    return (*advice, f"more than {problem.given_lattice.divisions} divisions")
 
 
 def _offsets(problem: Problem) -> Iterator[str]:
     """The axes across the way of the base: those that exist, and those that could."""
     travels = bool(np.any(problem.base_displacement != 0.0))
     for name in ("lateral", "normal"):
-        axis = getattr(problem.lattice, name)
+        axis = getattr(problem.given_lattice, name)
         if axis is not None:
             yield (
                 f"lattice.{name}, which has half_count {axis.half_count} and spacing "

@@ -48,3 +48,10 @@ class Lattice:
     def axes(self) -> tuple[str, ...]:
         """Names of the axes along which the base is offset, in the order of node indices."""
         return tuple(name for name in ("lateral", "normal") if getattr(self, name) is not None)
+
+    @property
+    def summary(self) -> str:
+        """Divisions and axes, in a few words."""
+        axes = [*self.axes, *(f"posture {k}" for k, _ in enumerate(self.postures))]
+        across = f", axes {', '.join(axes)}" if axes else ""
+        return f"{self.divisions} divisions{across}"

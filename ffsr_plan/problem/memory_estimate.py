@@ -40,7 +40,7 @@ def check_lattice(problem: Problem, bytes_per_edge: float = 1.0, ants: int = 0) 
     """
     if not isinstance(problem, Problem):
         raise InvalidInput("problem", problem, "a Problem")
-    lattice = problem.lattice
+    lattice = problem.given_lattice
     axes = [getattr(lattice, name) for name in lattice.axes]
     nodes = math.prod(2 * axis.half_count + 1 for axis in axes)
     layers = lattice.divisions + 1
@@ -68,7 +68,7 @@ def check_colonies(problem: Problem, colonies: int) -> None:
         problem: gives the lattice.
         colonies: number of independent colonies, whose results are compared at the end.
     """
-    lattice = problem.lattice
+    lattice = problem.given_lattice
     axes = [getattr(lattice, name) for name in lattice.axes]
     edges = lattice.divisions * math.prod(2 * axis.half_count + 1 for axis in axes) ** 2
     of_path = (_BYTES_PER_LAYER if lattice.postures else 8) * lattice.divisions

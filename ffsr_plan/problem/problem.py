@@ -16,10 +16,11 @@ from ffsr_plan.core.contacts import contact_list
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import rotation_vector, to_angles
-from ffsr_plan.core.setting_rules import InstanceOf, NoneMeans, Number, Rule, Truth, Vector
+from ffsr_plan.core.setting_rules import InstanceOf, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.problem.end_effector_goal import inverse_kinematics
+from ffsr_plan.problem.base_window import Window, default_window
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
@@ -96,7 +97,8 @@ class Problem:
             half a turn, within 2e-10 rad, in the sense that is positive about the first axis of the
             base (x, y, z) that takes part. `free-floating`: attitude and
             position react; the centre of mass stays where it is.
-        lattice: layers and offsets; None for `Lattice()`.
+        lattice: layers and offsets that the path is sought on; None for any path of the base within
+            the window and of the joints within their limits.
         delta: clearance weight of Eq. 8, in units of length squared, >= 0.
         length_unit: metres per unit of length in F. The paper gives no unit, and F is not
             scale-free: the unit decides how much delta weighs.
@@ -106,6 +108,11 @@ class Problem:
         tolerance: clearance [m] below which an edge may count as blocked.
         reach_attitude: whether the arms have to bring the base to the goal's attitude, within 1e-8
             rad; in the modes whose attitude reacts, on a lattice with posture axes.
+        window: (2, 3) least and greatest coordinates of the base origin in the world [m], where
+            thrusters move it and there is no lattice; along an axis on which both are equal it
+            stays where it is. None for the box around start and goal, larger on all sides by half
+            their distance and the robot's reach; flat where all joint axes are parallel to an axis
+            of the world that start and goal do not differ along.
 
     Raises:
         InvalidInput: naming the field, its value and what is allowed.
@@ -116,9 +123,7 @@ class Problem:
     start: Annotated[Vector, Configuration()]
     goal: Annotated[Vector, Configuration()]
     mode: Annotated[Given[Mode, Mode | str], ModeName()] = setting(default=Mode.FREE_FLYING)
-    lattice: Annotated[Given[Lattice, Lattice | None], NoneMeans(Lattice)] = setting(
-        default_factory=Lattice
-    )
+    lattice: Lattice | None = None
     delta: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 0.0
     length_unit: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] = 1.0
     clearance_cap: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] | None = None
@@ -126,11 +131,13 @@ class Problem:
     rotation_weight: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 1.0
     tolerance: Annotated[float, Number(at_least=1e-7, at_most=_LARGEST)] = 1e-4
     reach_attitude: Annotated[bool, Truth()] = False
+    window: Annotated[Given[Array | None, ArrayLike | None], Window()] = setting(default=None)
 
     def __post_init__(self) -> None:
         self._check_travel()
         self._check_attitude()
         self._check_displacement()
+        self._check_window()
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{name}={value}" for name, value in self._summary())
@@ -175,7 +182,8 @@ class Problem:
             base_attitude=to_angles(self.goal[3:7]) if held else None,
             seed=seed,
         )
-        return replace(self, goal=goal, reach_attitude=bool(self.lattice.postures) and not held)
+        postures = self.lattice is not None and bool(self.lattice.postures)
+        return replace(self, goal=goal, reach_attitude=postures and not held)
 
     @property
     def base_displacement(self) -> Array:
@@ -198,14 +206,39 @@ class Problem:
         return float(np.linalg.norm(vector, axis=-1))
 
     @property
-    def delta_d(self) -> float:
-        """Length of one layer's nominal step, Eq. 4 [m]: weighted norm of what is prescribed."""
+    def straight_length(self) -> float:
+        """Length of the straight way from start to goal [m]: weighted norm of what is prescribed.
+
+        Of the ways round of a continuous joint the shorter one counts, so that no path is shorter.
+        """
         slide = self.robot.prismatic
         joints = self.joint_displacement
         metres = np.concatenate([self.base_displacement, joints[slide]]) * self.position_weight
         radians = np.append(joints[~slide], self.held_rotation) * self.rotation_weight
-        total = float(np.sqrt(np.sum(metres**2) + np.sum(radians**2)))
-        return total / self.lattice.divisions
+        return float(np.sqrt(np.sum(metres**2) + np.sum(radians**2)))
+
+    @property
+    def delta_d(self) -> float:
+        """Length of one layer's nominal step, Eq. 4 [m]."""
+        return self.straight_length / self.given_lattice.divisions
+
+    @property
+    def given_lattice(self) -> Lattice:
+        """The lattice, for all that works on a lattice only.
+
+        Raises:
+            InvalidInput: the problem has none.
+        """
+        if self.lattice is None:
+            raise InvalidInput("problem", self, "a problem with a lattice")
+        return self.lattice
+
+    @property
+    def base_window(self) -> Array:
+        """(2, 3) least and greatest coordinates of the base origin without a lattice [m]."""
+        if self.window is not None:
+            return self.window
+        return frozen(default_window(self.robot, self.start, self.start[:3] + self.base_displacement))
 
     def _check_travel(self) -> None:
         """Raise `InvalidInput` for joints that travel so far that the reaction takes too long."""
@@ -214,7 +247,7 @@ class Problem:
             if abs(change) > _FARTHEST_TRAVEL:
                 raise InvalidInput(f"goal (joint {name}, travel)", float(change), allowed)
         begin = self.robot.joint_values(self.start)
-        for k, axis in enumerate(self.lattice.postures):
+        for k, axis in enumerate(self.lattice.postures if self.lattice else ()):
             way = float(np.max(np.abs(axis.displacement(self.robot, begin)), initial=0.0))
             farthest = way * float(np.max(np.abs(axis.factors(np.array(axis.indices)))))
             if farthest > _FARTHEST_TRAVEL:
@@ -224,7 +257,7 @@ class Problem:
         """Raise `InvalidInput` if `reach_attitude` is set and cannot be."""
         if self.reach_attitude and self.mode.has_wheels:
             raise InvalidInput("reach_attitude", True, "False where wheels hold the attitude")
-        if self.reach_attitude and not self.lattice.postures:
+        if self.reach_attitude and not (self.lattice and self.lattice.postures):
             raise InvalidInput("reach_attitude", True, "a lattice with posture axes")
 
     def _check_displacement(self) -> None:
@@ -236,7 +269,7 @@ class Problem:
             raise InvalidInput(
                 "goal", self.goal.tolist(), "a configuration that differs from the start"
             )
-        if not translates and self.lattice.axes:
+        if not translates and self.lattice is not None and self.lattice.axes:
             raise InvalidInput(
                 "lattice",
                 f"{' and '.join(self.lattice.axes)} axis, "
@@ -244,16 +277,26 @@ class Problem:
                 "no lateral or normal axis where there is no direction of travel",
             )
 
+    def _check_window(self) -> None:
+        """Raise `InvalidInput` for a window that is of no use, or without start or goal in it."""
+        if self.window is None:
+            return
+        if self.lattice is not None:
+            raise InvalidInput("window", self.window.tolist(), "None on a lattice, whose axes count")
+        if self.mode.floats:
+            raise InvalidInput("window", self.window.tolist(), f"None in the mode {self.mode}")
+        for name, place in (("start", self.start[:3]), ("goal", self.goal[:3])):
+            if np.any(place < self.window[0] - _SAME) or np.any(place > self.window[1] + _SAME):
+                allowed = f"a window that holds the base at the {name}, {place.tolist()}"
+                raise InvalidInput("window", self.window.tolist(), allowed)
+
     def _summary(self) -> list[tuple[str, str]]:
         """Names and values for representations."""
-        lattice = self.lattice
-        axes = [*lattice.axes, *(f"posture {k}" for k, _ in enumerate(lattice.postures))]
-        across = f", axes {', '.join(axes)}" if axes else ""
         return [
             ("robot", self.robot.name),
             ("mode", str(self.mode)),
             ("obstacles", counted(len(self.scene), "sphere")),
-            ("lattice", f"{lattice.divisions} divisions{across}"),
+            ("lattice", "none" if self.lattice is None else self.lattice.summary),
             ("delta", f"{self.delta:g}"),
             ("length_unit", f"{self.length_unit:g} m"),
         ]

@@ -86,8 +86,7 @@ class EdgeTravel:
             floats = motion.mode.floats
             travels = self._bound.reacting(links, quats, error, floats)
         else:
-            angular_velocity = np.tile(motion.turn, (m, 1))
-            travels = self._bound.held(links, quats, angular_velocity)
+            travels = self._bound.held(links, quats, motion.turns)
         largest = (end - begin) * np.max(travels.world.speed, axis=1, initial=0.0)
         curvature = np.max(travels.world.curvature, axis=1, initial=0.0)
         self._known[begin, end] = travels, curvature <= _STRAIGHTNESS * largest

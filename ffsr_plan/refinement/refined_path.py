@@ -60,8 +60,8 @@ def _levels(problem: Problem) -> list[_Level]:
     if problem.delta == 0.0:
         return [_Level(step, 2, _EXHAUSTIVE, _ROUNDS, 0.0) for step in _STEPS]
     reach_on_lattice, reach = 2, 1
-    if len(problem.lattice.axes) == 1:
-        offsets = math.isqrt(MOST_EDGES_AT_ONCE // problem.lattice.divisions)
+    if len(problem.given_lattice.axes) == 1:
+        offsets = math.isqrt(MOST_EDGES_AT_ONCE // problem.given_lattice.divisions)
         reach_on_lattice, reach = min(40, max(2, (offsets - 1) // 2)), 2
     return [
         _Level(_FINEST, reach_on_lattice, _EXHAUSTIVE, 1, 0.0),
@@ -108,7 +108,7 @@ def refined_path(
         stop_requested: asked between rounds; whether to end with what has been reached.
     """
     problem = lattice.problem
-    if not problem.lattice.axes or stop_requested():
+    if not problem.given_lattice.axes or stop_requested():
         return None  # with one node a layer there is no offset to change
     descent = _Descent(lattice, prover, offsets, clearances)
     before = descent.edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
@@ -145,7 +145,7 @@ class _Descent:
         self, lattice: LayeredLattice, prover: Prover, offsets: Array, clearances: Array
     ) -> None:
         self._problem, self._prover = lattice.problem, prover
-        settings = lattice.problem.lattice
+        settings = lattice.problem.given_lattice
         axes = [getattr(settings, name) for name in settings.axes]
         self.unit = lattice.directions * (np.array([a.spacing for a in axes]) / _FINEST)[:, None]
         """(axes, 3) displacement [m] of one sixteenth along each axis."""

@@ -50,7 +50,9 @@ class LatticePlanner(ABC):
 
     def refuse(self, problem: Problem) -> None:
         """Raise `InvalidInput` if the planner cannot solve the problem, naming one that can."""
-        if not problem.lattice.postures:
+        if problem.lattice is None:
+            raise InvalidInput("planner", self.name, "tree-planner, or a problem with a lattice")
+        if not problem.given_lattice.postures:
             return
         reason = "this planner searches one configuration a node"
         if problem.mode.attitude_reacts:

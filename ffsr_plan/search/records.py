@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -45,7 +45,31 @@ class Cycle(NamedTuple):
     pheromone: Array
 
 
-OnCycle = Callable[[Cycle], object]
+@equal_by_content
+class TreeCycle(NamedTuple):
+    """The state of a search by trees after one round, as callbacks receive it.
+
+    Attributes:
+        number: rounds done, from 1.
+        cycles: rounds that are expected; the last one may come earlier or later.
+        best: F of the best path that is proven free; infinite where there is none yet.
+        iteration_best: F of the best path of the round, not proven; infinite without one.
+        checks: configurations checked so far.
+        nodes: of all trees so far.
+        path: (m + 1, 3) base origin at the corners of the best path [m]; (0, 3) without one.
+    """
+
+    number: int
+    cycles: int
+    best: float
+    iteration_best: float
+    checks: int
+    nodes: int
+    path: Array
+
+
+OnCycle = Callable[[Any], object]
+"""Called with a `Cycle` by a colony, with a `TreeCycle` by a search by trees."""
 
 
 class SearchMonitor(NamedTuple):
@@ -124,6 +148,26 @@ class Trails(NamedTuple):
 
 
 @equal_by_content
+class Branches(NamedTuple):
+    """Edges of the trees of a search, for pictures.
+
+    Attributes:
+        begin: (edges, 3) base origin at the node that is nearer to the root [m].
+        end: (edges, 3) base origin at the other node [m].
+        tree: (edges,) 0 for the tree from the start, 1 for the tree from the goals.
+    """
+
+    begin: Array
+    end: Array
+    tree: IntArray
+
+    @classmethod
+    def none(cls) -> Branches:
+        """No edges."""
+        return cls(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0, dtype=np.int64))
+
+
+@equal_by_content
 class SearchResult(NamedTuple):
     """The result of a search over a roadmap.
 
@@ -152,6 +196,7 @@ class SearchRequest(NamedTuple):
         on_cycle: called after each cycle of a single colony, or None.
         stop_requested: asked often; whether the search is to end with what it has.
         begin: called when the search begins, after the lattice has been set up.
+        first: whether the first path that is proven free is enough.
     """
 
     refine: bool | None = None
@@ -161,6 +206,7 @@ class SearchRequest(NamedTuple):
     on_cycle: OnCycle | None = None
     stop_requested: Callable[[], bool] = bool
     begin: Callable[[], object] = bool
+    first: bool = False
 
     def monitor(self) -> SearchMonitor:
         """The monitor of a search that begins now."""
@@ -174,22 +220,22 @@ class Solution(NamedTuple):
     """What a planner returns: a proven motion and its figures of merit.
 
     Attributes:
-        lattice: the lattice that was searched.
+        lattice: the lattice that was searched; None without one.
         motion: the motion that was proven free.
         nodes: (m + 1,) offset indices along the path, 0 = no offset; (m + 1, axes) where the
-            lattice has several axes.
+            lattice has several axes; (0,) without a lattice.
         length: L of Eq. 6 [m].
         objective: F of Eq. 8 [length units].
         lattice_objective: F of the path on the lattice, before refinement.
         optimum: F of the exact lattice optimum; with posture axes a lower bound on it.
         clearances: (m + 1,) least link-to-sphere distance at each node [m].
         history: progress of the search.
-        trails: the edges that ants walked.
+        trails: the edges that ants walked; without a lattice, those of the trees.
         certificate: what was proven.
         interrupted: whether Ctrl-C or the time limit ended the search early.
     """
 
-    lattice: LayeredLattice
+    lattice: LayeredLattice | None
     motion: Motion
     nodes: IntArray
     length: float
@@ -198,6 +244,6 @@ class Solution(NamedTuple):
     optimum: float
     clearances: Array
     history: History
-    trails: Trails
+    trails: Trails | Branches
     certificate: Certificate
     interrupted: bool

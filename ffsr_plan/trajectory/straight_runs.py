@@ -89,8 +89,7 @@ def straight_runs(motion: Motion) -> StraightRuns:
     Returns:
         The runs; none if nothing moves.
     """
-    turn = np.zeros(3) if motion.mode.attitude_reacts else motion.turn
-    rotations = np.broadcast_to(turn, (motion.edges, 3))
+    rotations = np.zeros((motion.edges, 3)) if motion.mode.attitude_reacts else motion.turns
     joint_steps = np.diff(motion.joint_values, axis=0)
     steps = np.hstack([motion.base_steps(), rotations, joint_steps])
     steps[np.abs(steps) <= _SMALLEST_STEP] = 0.0

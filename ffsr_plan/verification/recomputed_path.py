@@ -39,7 +39,7 @@ class LatticePath:
 
     def __init__(self, plan: PlanData) -> None:
         """Place the nodes of a plan."""
-        problem, lattice = plan.problem, plan.problem.lattice
+        problem, lattice = plan.problem, plan.problem.given_lattice
         m = lattice.divisions
         progress = np.arange(m + 1)[:, None] / m
         nodes = plan.nodes.reshape(m + 1, -1)
@@ -70,11 +70,11 @@ class LatticePath:
         found = []
         if np.any(plan.nodes.reshape(len(nodes), -1)[[0, -1]]):
             found.append("the nodes do not begin and end without an offset")
-        if self.moved and problem.lattice.postures:
+        if self.moved and problem.given_lattice.postures:
             found.append("the base positions are not those of the nodes")
         if self.moved and not self._in_window():
             found.append("the base leaves the window of the lattice")
-        if self.bent and not (problem.lattice.postures and problem.reach_attitude):
+        if self.bent and not (problem.given_lattice.postures and problem.reach_attitude):
             found.append("the joint values are not those of the nodes")
         rises = plan.objective > plan.lattice_objective * (1.0 + AGREEMENT)
         if rises and problem.delta == 0.0 and not self.bent:
@@ -123,7 +123,7 @@ class LatticePath:
     def _least(self) -> float:
         """F of the straight path past obstacles that are far away, below which no path falls."""
         problem = self._plan.problem
-        m, cap = problem.lattice.divisions, problem.clearance_cap
+        m, cap = problem.given_lattice.divisions, problem.clearance_cap
         progress = np.arange(m + 1)[:, None] / m
         first, last = self._plan.motion.joint_values[[0, -1]]
         straight = length_of(problem, self._straight, first + progress * (last - first))
@@ -133,7 +133,7 @@ class LatticePath:
 
 def _directions(plan: PlanData) -> Array:
     """(axes, 3) unit vectors of the base axes: lateral, then normal; world axes."""
-    problem, names = plan.problem, plan.problem.lattice.axes
+    problem, names = plan.problem, plan.problem.given_lattice.axes
     if not names:
         return np.zeros((0, 3))
     x, y, z = problem.goal[:3] - problem.start[:3]
@@ -152,7 +152,7 @@ def _displacements(plan: PlanData, indices: IntArray, nominal: Array) -> Array:
     """(m + 1, nd) displacement of the joints by posture axes at indices (m + 1, axes)."""
     robot = plan.problem.robot
     total = np.zeros_like(nominal)
-    for axis, index in zip(plan.problem.lattice.postures, indices.T, strict=False):
+    for axis, index in zip(plan.problem.given_lattice.postures, indices.T, strict=False):
         target = getattr(axis, "towards", None)
         if isinstance(target, str):
             for name, value in robot.postures[target].items():

@@ -238,5 +238,5 @@ def _guiding_attitudes(lattice: PostureLattice) -> Array:
     problem = lattice.problem
     if not problem.reach_attitude:
         return np.array(lattice.base.nominal.attitudes)
-    progress = np.linspace(0.0, 1.0, problem.lattice.divisions + 1)
+    progress = np.linspace(0.0, 1.0, problem.given_lattice.divisions + 1)
     return slerp(problem.start[3:7], problem.goal[3:7], progress)

@@ -25,7 +25,7 @@ def lower_bound(lattice: PostureLattice) -> float:
     from ffsr_plan.lattice.shortest_path_kernel import extend
 
     problem, base = lattice.problem, lattice.base
-    m, count = problem.lattice.divisions, len(base.offsets)
+    m, count = problem.given_lattice.divisions, len(base.offsets)
     apart = np.full((m + 1, count), np.inf)
     if origin_is_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets

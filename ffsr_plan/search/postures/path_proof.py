@@ -174,7 +174,7 @@ def unproven(problem: Problem, edge: RefusedEdge, cut_short: bool) -> UnprovenPa
         edge.link,
         edge.obstacle,
         edge.distance,
-        problem.lattice.divisions,
+        problem.given_lattice.divisions,
         contact.source,
         advice,
     )

@@ -58,7 +58,9 @@ class PostureAnnealing(AnnealingSettings):
 
     def refuse(self, problem: Problem) -> None:
         """Raise `InvalidInput` if the problem's lattice has no posture axes."""
-        if not problem.lattice.postures:
+        if problem.lattice is None:
+            raise InvalidInput("planner", self.name, "tree-planner, or a problem with a lattice")
+        if not problem.given_lattice.postures:
             allowed = "max-min-ant-system, ant-system or lattice-optimum without posture axes"
             raise InvalidInput("planner", self.name, allowed)
 
@@ -98,7 +100,7 @@ class PostureAnnealing(AnnealingSettings):
             proofs.take(path, proof, corrected, spent)
             if corrected.holds or result.interrupted or monitor.expired():
                 break
-            shifts = _SHIFTS_AFTER_REFUSAL * problem.lattice.divisions
+            shifts = _SHIFTS_AFTER_REFUSAL * problem.given_lattice.divisions
             path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL, monitor.expired)
         return proofs.solution(result)
 

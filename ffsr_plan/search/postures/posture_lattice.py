@@ -57,7 +57,7 @@ class PostureLattice:
         self.problem = problem
         _check_size(problem)
         self.base = LayeredLattice(problem)
-        axes = problem.lattice.postures
+        axes = problem.given_lattice.postures
         grids = np.meshgrid(*(np.array(a.indices) for a in axes), indexing="ij")
         self.indices: IntArray = frozen(np.stack([g.ravel() for g in grids], axis=1))
         self.origin = int(np.flatnonzero(~self.indices.any(axis=1))[0])
@@ -106,7 +106,7 @@ class PostureLattice:
         layers = 1 if self.alike else len(self.joint_values) - 1
         n, k = self.successors.shape
         nominal = self.base.nominal
-        still = IDENTITY if nominal.mode.attitude_reacts else rotations.exp(nominal.turn)
+        still = IDENTITY if nominal.mode.attitude_reacts else rotations.exp(nominal.turns[0])
         result = np.tile(still, (layers, n, k, 1))
         if not (nominal.mode.attitude_reacts and self.problem.robot.nd):
             return result
@@ -167,7 +167,7 @@ class PostureLattice:
         return self.joint_values[:1] if self.alike else self.joint_values
 
     def _neighbours(self) -> IntArray:
-        axes = self.problem.lattice.postures
+        axes = self.problem.given_lattice.postures
         number = {tuple(index): p for p, index in enumerate(self.indices.tolist())}
         steps = list(product((-1, 0, 1), repeat=len(axes)))
         return np.array(
@@ -181,7 +181,7 @@ class PostureLattice:
 
 def _check_size(problem: Problem) -> None:
     """Raise `InvalidInput` if the arrays of the search, or their making, would take too much."""
-    robot, settings = problem.robot, problem.lattice
+    robot, settings = problem.robot, problem.given_lattice
     layers, shapes = settings.divisions + 1, int(robot.collision_model.ngeoms)
     postures = math.prod(len(axis.indices) for axis in settings.postures)
     offsets = math.prod(2 * getattr(settings, name).half_count + 1 for name in settings.axes)
@@ -208,7 +208,7 @@ def _check_size(problem: Problem) -> None:
 
 def _largest_step(problem: Problem) -> float:
     """Largest change of a joint from one layer to the next [rad or m], as a bound."""
-    robot, settings = problem.robot, problem.lattice
+    robot, settings = problem.robot, problem.given_lattice
     begin = robot.joint_values(problem.start)
     most = float(np.max(np.abs(problem.joint_displacement), initial=0.0)) / settings.divisions
     for axis in settings.postures:
@@ -224,5 +224,5 @@ def displacements(problem: Problem, nominal: Array) -> Array:
         problem: gives the axes.
         nominal: (m + 1, nd) joint values without displacement.
     """
-    robot, axes = problem.robot, problem.lattice.postures
+    robot, axes = problem.robot, problem.given_lattice.postures
     return np.stack([axis.displacement(robot, nominal) for axis in axes], axis=1)

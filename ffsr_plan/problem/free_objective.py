@@ -1,0 +1,77 @@
+"""Length L and objective F of a path without a lattice.
+
+L is the Euclidean length in base position, wheels' turn and joint values with the weights of Eq. 4,
+and F = L + delta sum of 1 / d, in units of length. The clearances d are taken at 39 stations at equal
+steps of L, as many as the inner nodes of a lattice of 40 divisions: for the straight path F is that of
+Eq. 8 on such a lattice, and corners that are added to a path do not change it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.problem.objective import objective
+from ffsr_plan.problem.problem import Problem
+
+STATIONS = 39
+"""Points of a path at which F counts the clearance."""
+
+
+def edge_lengths(problem: Problem, motion: Motion) -> Array:
+    """Length of each edge of a motion.
+
+    Args:
+        problem: gives the weights.
+        motion: the motion.
+
+    Returns:
+        (m,) lengths [m].
+    """
+    slide = problem.robot.prismatic
+    joints = np.diff(motion.joint_values, axis=0)
+    metres = np.hstack([motion.base_steps(), joints[:, slide]]) * problem.position_weight
+    radians = joints[:, ~slide] * problem.rotation_weight
+    squares = np.sum(metres**2, axis=1) + np.sum(radians**2, axis=1)
+    if motion.mode.has_wheels:
+        squares += np.sum((motion.turns * problem.rotation_weight) ** 2, axis=1)
+    return np.asarray(np.sqrt(squares))
+
+
+def stations(lengths: Array, count: int = STATIONS) -> tuple[IntArray, Array]:
+    """Points at equal steps of length inside a path.
+
+    Args:
+        lengths: (m,) length of each edge [m]; where all are zero, edges count alike.
+        count: number of points.
+
+    Returns:
+        (count,) edges, and (count,) times on them in [0, 1].
+    """
+    if not np.any(lengths > 0.0):
+        lengths = np.ones(len(lengths))
+    passed = np.append(0.0, np.cumsum(lengths))
+    places = passed[-1] * np.arange(1, count + 1) / (count + 1)
+    edge = np.clip(np.searchsorted(passed, places, side="right") - 1, 0, len(lengths) - 1)
+    return edge, np.clip((places - passed[edge]) / lengths[edge], 0.0, 1.0)
+
+
+def free_objective(problem: Problem, length: float, clearances: Array) -> float:
+    """F of a path.
+
+    Args:
+        problem: gives delta, the unit of length and the largest clearance that counts.
+        length: L [m].
+        clearances: (STATIONS,) at the stations [m].
+
+    Returns:
+        F [length units].
+    """
+    return objective(problem, length, np.concatenate([[np.inf], clearances, [np.inf]]))
+
+
+def least_objective(problem: Problem) -> float:
+    """A bound below which F of no path falls: the straight way, all obstacles far away."""
+    cap = np.inf if problem.clearance_cap is None else problem.clearance_cap
+    return free_objective(problem, problem.straight_length, np.full(STATIONS, cap))

@@ -1,0 +1,1 @@
+"""Planning in the whole configuration space by trees of motions."""

@@ -1,0 +1,1 @@
+"""Compiled search: flight of edges, trees, and improvement of paths."""

@@ -1,0 +1,129 @@
+"""The arrays that all kernels of the tree search share.
+
+A state is a row of D = 4 + nd coordinates: base position in the world [m], the angle by which wheels
+have turned the base [rad], joint values [rad or m]. Coordinates that the mode does not actuate stay
+zero. The attitude of the base that belongs to a state is kept beside it.
+
+Robot, scene and settings are few arrays of records: numba compiles each array of an argument anew
+at every call.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.scene.sphere_tree import SphereTree
+
+Records = NDArray[Any]
+TURN, JOINTS = 3, 4
+"""Column of the angle that wheels have turned the base by, and first column of the joints."""
+
+_MATRIX = (3, 3)
+LINK = np.dtype(
+    [
+        ("parent", np.int64),
+        ("fixed", np.float64, _MATRIX),
+        ("sine", np.float64, _MATRIX),
+        ("versine", np.float64, _MATRIX),
+        ("offset", np.float64, 3),
+        ("slide", np.float64, 3),
+        ("turning", np.float64, 3),
+        ("sliding", np.float64, 3),
+        ("mass", np.float64),
+        ("lever", np.float64, 3),
+        ("inertia", np.float64, _MATRIX),
+        ("value", np.float64),
+        ("rate", np.float64),
+        ("rotation", np.float64, _MATRIX),
+        ("origin", np.float64, 3),
+        ("angular", np.float64, 3),
+        ("linear", np.float64, 3),
+    ],
+    align=True,
+)
+"""A link: what `kinematics` says of it and its body, then joint value, rate, pose and velocity at the
+configuration at hand, in base axes."""
+
+SHAPE = np.dtype(
+    [
+        ("link", np.int64),
+        ("kind", np.int64),
+        ("rotation", np.float64, _MATRIX),
+        ("position", np.float64, 3),
+        ("core", np.float64, 3),
+        ("skin", np.float64),
+        ("reach", np.float64),
+        ("frame", np.float64, 15),
+        ("velocity", np.float64, 3),
+        ("speed", np.float64),
+    ],
+    align=True,
+)
+"""A collision shape: half sides of its core (a box, or a segment along z) and the distance by which
+its surface surrounds the core [m], largest distance of the core from its middle [m]; then rotation,
+position and size as of `Placements.frames`, velocity of its middle, and a bound on the speed of its
+core, all in base axes and relative to the base."""
+
+SETUP = np.dtype(
+    [
+        ("reacts", np.bool_),
+        ("floats", np.bool_),
+        ("axis", np.float64, 3),
+        ("anchor", np.float64, 3),
+        ("margin", np.float64),
+        ("self_margin", np.float64),
+        ("least_step", np.float64),
+        ("nearness_weight", np.float64),
+        ("cap", np.float64),
+        ("goal", np.float64, 4),
+        ("missed_weight", np.float64),
+        ("largest_turn", np.float64),
+        ("rate", np.float64, 3),
+        ("center", np.float64, 3),
+        ("drift", np.float64, 3),
+        ("checks", np.int64),
+    ],
+    align=True,
+)
+"""What actuates the base; axis of the wheels' turn, in base axes; centre of mass at the start, world
+[m]; clearances that are kept [m]; least travel between two checks [m]; cost of 1 / d at a station
+[m^2] and the largest clearance d that counts [m]; the attitude to arrive at and the cost of missing
+it [m/rad]; largest joint step of the integration [rad or m]. Then angular velocity of the base, centre of mass and its velocity at the
+configuration at hand, relative to the base, and the number of configurations checked so far."""
+
+
+class SearchArrays(NamedTuple):
+    """Robot, scene, settings and memory of a search.
+
+    Attributes:
+        links: (n,) of `LINK`.
+        shapes: (g,) of `SHAPE`.
+        pairs: (p, 2) shapes that must not touch each other.
+        tree: the obstacles.
+        setup: (1,) of `SETUP`.
+        box: (2, D) least and greatest coordinates.
+        weights: (2, D) of the coordinates: in the distance of states, and in the length L.
+        bars: (k, D + 2) states near which the proof refused an edge, distance within which a larger
+            margin is kept, and that margin [m].
+        stack: (64,) memory for `nearest_sphere`.
+        bounds: (64,) memory for `nearest_sphere`.
+        frame: (15,) memory for the placement of a shape.
+        still: (3,) zeros.
+    """
+
+    links: Records
+    shapes: Records
+    pairs: IntArray
+    tree: SphereTree
+    setup: Records
+    box: Array
+    weights: Array
+    bars: Array
+    stack: NDArray[np.int32]
+    bounds: Array
+    frame: Array
+    still: Array

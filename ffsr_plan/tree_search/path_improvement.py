@@ -1,0 +1,120 @@
+"""A path that is made better: moves, shortest paths around it, and fewer corners."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.tree_search.kernels.flight import fly_path
+from ffsr_plan.tree_search.kernels.layered_search import LAYERS, search_around
+from ffsr_plan.tree_search.kernels.path_cost import path_cost
+from ffsr_plan.tree_search.kernels.path_moves import PathMemory, improve, thin
+from ffsr_plan.tree_search.kernels.random_numbers import RandomState
+from ffsr_plan.tree_search.search_space import SearchSpace
+
+_ROOM = 64  # corners that may be added to a path
+_SPREAD = 0.3  # of the largest moves of a corner
+_CHUNK = 4000  # configurations checked between two looks at the clock
+_STATIONS = 12  # at which two paths are compared
+_AS_ONE = 0.5  # distance up to which two paths go one way round
+
+
+class ImprovedPath:
+    """A path through the configuration space, flown, and what it costs.
+
+    Attributes:
+        last: its last corner.
+        cost: see `path_cost` [m].
+    """
+
+    def __init__(self, space: SearchSpace, states: Array, attitudes: Array) -> None:
+        """A path that has been flown.
+
+        Args:
+            space: the configuration space.
+            states: (k, D) corners.
+            attitudes: (k, 4) of the base there.
+        """
+        self._space, self.last = space, len(states) - 1
+        room = max(len(states), LAYERS + 2) + _ROOM
+        self._memory = PathMemory(
+            np.zeros((2, room, states.shape[1])), np.zeros((2, room, 4)), np.zeros(room)
+        )
+        self._memory.states[0, : len(states)] = states
+        self._memory.attitudes[0, : len(states)] = attitudes
+        self.cost = 0.0
+        self._weigh()
+
+    @property
+    def states(self) -> Array:
+        """(k, D) corners."""
+        return self._memory.states[0, : self.last + 1].copy()
+
+    def thin(self, checks: int) -> None:
+        """Leave out corners; at most so many configurations are checked."""
+        self.last = thin(self._space.arrays, self._memory, self.last, self._until(checks))
+        self._weigh()
+
+    def move(self, random: RandomState, checks: int, expired: object = None) -> None:
+        """Try random moves until so many configurations have been checked.
+
+        Args:
+            random: (1,) state of the random numbers.
+            checks: number of configurations.
+            expired: a function that tells whether to stop, or None.
+        """
+        end = self._until(checks)
+        while self._until(0) < end and not (callable(expired) and expired()):
+            stop = min(self._until(_CHUNK), end)
+            self.last = improve(
+                self._space.arrays, self._memory, self.last, random, _SPREAD, stop
+            )
+        self._weigh()
+
+    def search_around(self, random: RandomState, checks: int) -> bool:
+        """Look for a better path through random states around this one; whether there was one."""
+        return self._search(random, self.cost, checks)
+
+    def repair(self, random: RandomState, checks: int) -> bool:
+        """Whether the path is clear, after a search around it if it was not.
+
+        What has to be kept away from may have changed since the path was flown.
+        """
+        space, memory = self._space.arrays, self._memory
+        reached = fly_path(space, memory.states[0], memory.attitudes[0], 0, self.last)
+        if reached == self.last:
+            self._weigh()
+            return True
+        return self._search(random, np.inf, checks)
+
+    def goes_with(self, other: ImprovedPath) -> bool:
+        """Whether another path goes the same way round, as far as some of its states tell."""
+        weights = self._space.arrays.weights[0]
+        first, second = (_stations(path.states * weights) for path in (self, other))
+        return bool(np.max(np.linalg.norm(first - second, axis=1)) < _AS_ONE)
+
+    def _search(self, random: RandomState, cost: float, checks: int) -> bool:
+        last = search_around(
+            self._space.arrays, self._memory, self.last, random, cost, self._until(checks)
+        )
+        if last < 0:
+            return False
+        self.last = last
+        self._weigh()
+        return True
+
+    def _until(self, checks: int) -> int:
+        return int(self._space.arrays.setup[0]["checks"]) + checks
+
+    def _weigh(self) -> None:
+        memory = self._memory
+        arrays = self._space.arrays
+        self.cost = float(path_cost(arrays, memory.states[0], memory.attitudes[0], self.last))
+
+
+def _stations(states: Array) -> Array:
+    """(_STATIONS, D) states at equal steps of length along corners (k, D)."""
+    steps = np.linalg.norm(np.diff(states, axis=0), axis=1)
+    passed = np.append(0.0, np.cumsum(steps))
+    places = np.linspace(0.0, passed[-1], _STATIONS)
+    return np.stack([np.interp(places, passed, column) for column in states.T], axis=1)

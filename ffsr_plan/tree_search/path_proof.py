@@ -1,0 +1,86 @@
+"""Proof of a path through the configuration space, as the motion that is returned."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan.collision.distances import Nearest
+from ffsr_plan.core.arrays import Array, frozen
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.proof.prover import Prover
+from ffsr_plan.tree_search.kernels.search_arrays import JOINTS, TURN
+from ffsr_plan.tree_search.search_space import SearchSpace
+
+_LONGEST = 0.4  # edge of the motion: many short ones are proven at once sooner than few long ones
+
+
+class Refusal(NamedTuple):
+    """An edge that could not be proven free.
+
+    Attributes:
+        edge: its number.
+        near: the nearest pair there.
+    """
+
+    edge: int
+    near: Nearest
+
+
+class PathProof(NamedTuple):
+    """A motion, and what is proven of it.
+
+    Attributes:
+        states: (m + 1, D) at the ends of its edges.
+        motion: the motion.
+        prover: proofs along it.
+        clearances: (m + 1,) at the ends of its edges [m].
+        refusals: edges that could not be proven free.
+    """
+
+    states: Array
+    motion: Motion
+    prover: Prover
+    clearances: Array
+    refusals: list[Refusal]
+
+
+def prove(space: SearchSpace, corners: Array) -> PathProof:
+    """Prove the motion along a path free of collisions, edge by edge.
+
+    Args:
+        space: the configuration space.
+        corners: (k, D) states.
+    """
+    problem, states = space.problem, cut(space, corners)
+    turns = None
+    if space.goals[0, TURN] > 0.0:
+        turns = states[:, TURN] / space.goals[0, TURN]
+    motion = Motion(
+        problem.robot, problem.mode, problem.start, problem.goal, frozen(states[:, :3].copy()),
+        frozen(states[:, JOINTS:].copy()), turns,
+    )  # fmt: skip
+    prover, m, still = Prover(motion, problem.scene, problem.tolerance), motion.edges, np.zeros(3)
+    clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
+    refusals = []
+    for edge, links in enumerate(prover.self_verdicts()):
+        ends = float(clearances[edge]), float(clearances[edge + 1])
+        verdict = prover.certify(edge, still, still, ends)
+        if not verdict.free:
+            refusals.append(Refusal(edge, prover.nearest(edge, still, still, verdict.time)))
+        elif not links.free:
+            refusals.append(Refusal(edge, prover.nearest_links(edge, links.time)))
+    return PathProof(states, motion, prover, frozen(clearances), refusals)
+
+
+def cut(space: SearchSpace, corners: Array) -> Array:
+    """(m + 1, D) the corners (k, D) with further states on edges that are long."""
+    weights = space.arrays.weights[0]
+    parts = [corners[:1]]
+    for begin, end in zip(corners[:-1], corners[1:], strict=True):
+        length = float(np.linalg.norm((end - begin) * weights))
+        count = max(1, int(np.ceil(length / _LONGEST)))
+        shares = np.arange(1, count)[:, None] / count
+        parts += [begin + shares * (end - begin), end[None]]
+    return np.concatenate(parts)

@@ -1,0 +1,172 @@
+"""Searches by trees, one after another, each with other random numbers and another length of edges."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.tree_search.kernels.flight import distance, fly
+from ffsr_plan.tree_search.kernels.random_numbers import random_state
+from ffsr_plan.tree_search.kernels.trees import FULL, Trees, grow, plant
+from ffsr_plan.tree_search.search_space import SearchSpace
+
+_CHUNK = 4000  # configurations checked between two looks at the clock
+_FIRST_NODES = 20_000  # of each tree of a first try; longer ones have more
+_CHECKS_A_NODE = 4  # at least
+
+
+class FoundPath(NamedTuple):
+    """A path that the trees have found.
+
+    Attributes:
+        states: (k, D) corners.
+        attitudes: (k, 4) of the base there.
+    """
+
+    states: Array
+    attitudes: Array
+
+
+class Meetings(NamedTuple):
+    """What the trees of all tries did.
+
+    Attributes:
+        tries: number of searches.
+        nodes: of all trees.
+        meetings: how often two trees met.
+        failed: how often the way from there to the goal was not clear at the true attitude.
+    """
+
+    tries: int = 0
+    nodes: int = 0
+    meetings: int = 0
+    failed: int = 0
+
+
+class Restarts:
+    """Searches by trees. A try is ended after some work, and the next ones may take longer.
+
+    Short tries find what is easy quickly; those that double in length find what is hard too.
+
+    Attributes:
+        trees: those of the last try.
+        meetings: what the trees of all tries did.
+    """
+
+    def __init__(
+        self,
+        space: SearchSpace,
+        rng: np.random.Generator,
+        reaches: tuple[float, ...],
+        first_checks: int,
+        roots: int,
+    ) -> None:
+        """Prepare the searches.
+
+        Args:
+            space: the configuration space.
+            rng: source of randomness.
+            reaches: longest edge of each try of a round; negative where the tree from the start
+                grows alone.
+            first_checks: configurations that a try of the first round checks at most.
+            roots: attitudes on arrival that are assumed at most.
+        """
+        self._space, self._random = space, random_state(rng)
+        self._reaches, self._first, self._roots = reaches, first_checks, roots
+        self._left = 0  # checks that remain of the try at hand
+        self.trees: Trees = self._planted()
+        self.meetings = Meetings()
+
+    def find(self, checks: int, expired: object = None) -> FoundPath | None:
+        """Search until a path is found or the work is done.
+
+        Args:
+            checks: configurations that may be checked.
+            expired: a function that tells whether to stop, or None.
+
+        Returns:
+            A path, or None.
+        """
+        setup, space = self._space.arrays.setup[0], self._space
+        end = int(setup["checks"]) + checks
+        while int(setup["checks"]) < end and not (callable(expired) and expired()):
+            if self._left <= 0:
+                self._begin()
+            reach = self._reaches[(self.meetings.tries - 1) % len(self._reaches)]
+            now = int(setup["checks"])
+            stop = min(now + min(self._left, _CHUNK), end)
+            found = grow(space.arrays, self.trees, self._random, abs(reach), reach > 0.0, stop)
+            self._left -= int(setup["checks"]) - now
+            if found == FULL:
+                self._left = 0
+            if found >= 0:
+                self._left = 0
+                return self._path_to(found)
+        return None
+
+    def nearest(self) -> tuple[Array, Array, Array]:
+        """Where the trees of the last try came nearest to each other.
+
+        Returns:
+            (D,) state and (4,) attitude of a node of the tree from the start, and (D,) state of one
+            of the tree from the goals.
+        """
+        first, second = (self.trees.states[side, : self.trees.counts[side]] for side in (0, 1))
+        weights, best = self._space.arrays.weights, (np.inf, 0, 0)
+        for j, goal in enumerate(second[:: max(1, len(second) // 500)]):
+            apart = np.sum(((first - goal) * weights[0]) ** 2, axis=1)
+            i = int(np.argmin(apart))
+            best = min(best, (float(apart[i]), i, j * max(1, len(second) // 500)))
+        _, i, j = best
+        return first[i], self.trees.attitudes[0, i], second[j]
+
+    def _begin(self) -> None:
+        """A new try."""
+        self._tally()
+        tries = self.meetings.tries
+        self._left = self._first * 2 ** (tries // len(self._reaches))
+        self.trees = self._planted()
+        self.meetings = self.meetings._replace(tries=tries + 1)
+
+    def _tally(self) -> None:
+        counts, known = self.trees.counts.tolist(), self.meetings
+        self.meetings = Meetings(
+            known.tries,
+            known.nodes + counts[0] + counts[1],
+            known.meetings + counts[3],
+            known.failed + counts[4],
+        )
+
+    def _planted(self) -> Trees:
+        """Trees that consist of their roots."""
+        space, start = self._space, self._space.start
+        capacity = max(_FIRST_NODES, self._left // _CHECKS_A_NODE)
+        trees = Trees(
+            np.zeros((2, capacity, len(start))),
+            np.zeros((2, capacity, 4)),
+            np.full((2, capacity), -1, dtype=np.int64),
+            np.zeros(max(self._roots, len(space.goals)), dtype=np.int64),
+            np.zeros(5, dtype=np.int64),
+        )
+        trees.states[0, 0], trees.attitudes[0, 0] = start, space.problem.start[3:7]
+        trees.counts[0] = 1
+        arrival = np.zeros(4)
+        for goal in space.goals:
+            fly(space.arrays, start, trees.attitudes[0, 0], goal, arrival, False)
+            plant(trees, goal, arrival)
+        return trees
+
+    def _path_to(self, node: int) -> FoundPath:
+        nodes = [node]
+        while (parent := int(self.trees.parents[0, nodes[-1]])) >= 0:
+            nodes.append(parent)
+        return FoundPath(
+            self.trees.states[0, nodes[::-1]].copy(), self.trees.attitudes[0, nodes[::-1]].copy()
+        )
+
+
+def far_apart(space: SearchSpace, first: Array, second: Array) -> float:
+    """Distance of two states (D,) in the search."""
+    return float(distance(space.arrays.weights, 0, first, second))

@@ -1,0 +1,198 @@
+"""Rounds of searching, improving and proving, each with twice the work of the one before."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.search.records import SearchMonitor, Solution, TreeCycle
+from ffsr_plan.tree_search.end_checks import check_ends
+from ffsr_plan.tree_search.kernels.flight import fly
+from ffsr_plan.tree_search.kernels.random_numbers import random_state
+from ffsr_plan.tree_search.not_found import path_not_found
+from ffsr_plan.tree_search.path_improvement import ImprovedPath
+from ffsr_plan.tree_search.proven_paths import ProvenPaths
+from ffsr_plan.tree_search.restarts import Restarts
+from ffsr_plan.tree_search.search_space import SearchSpace
+
+if TYPE_CHECKING:
+    from ffsr_plan.tree_search.tree_planner import TreePlanner
+
+_FIRST_ROUND = 60_000  # configurations checked
+_SEARCHING = 0.5  # share of a round that is spent on new paths
+_AT_FIRST = 4_000  # configurations checked to straighten a path that was just found
+_THINNING = 20_000  # at most, to leave out corners
+_FOR_NEW = 16_000  # to improve a path before it is compared with others
+_AROUND = 30_000  # at most, for a search around a path
+_ATTEMPTS = 4  # repairs of a path whose proof fails
+
+
+class SearchRounds:
+    """A search that can be ended at any time and then has the best path that it has proven.
+
+    Attributes:
+        space: the configuration space.
+        proven: proofs so far.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        planner: TreePlanner,
+        rng: np.random.Generator,
+        monitor: SearchMonitor,
+    ) -> None:
+        """Check the ends and prepare the search.
+
+        Args:
+            problem: a problem without a lattice.
+            planner: settings.
+            rng: source of randomness.
+            monitor: callback and stopping condition.
+
+        Raises:
+            StartInCollision, GoalInCollision: see `TreePlanner.solve`.
+        """
+        check_ends(problem)
+        self.space = SearchSpace(problem, planner.margin)
+        self._monitor, self._ways = monitor, planner.ways
+        searching, self._random = rng.spawn(1)[0], random_state(rng)
+        self._restarts = Restarts(
+            self.space, searching, planner.reaches, planner.first_checks, planner.roots
+        )
+        self._paths: list[ImprovedPath] = []
+        self.proven = ProvenPaths(self.space)
+
+    def run(self, checks: int, first: bool) -> bool:
+        """Search until so many configurations have been checked.
+
+        Args:
+            checks: number of configurations.
+            first: whether to end with the first path that is proven free.
+
+        Returns:
+            Whether the monitor ended it before.
+        """
+        if self._try_straight() or (first and self.proven.best is not None):
+            return False
+        size, number = _FIRST_ROUND, 0
+        while self._checks() < checks and not self._monitor.expired():
+            end = min(self._checks() + size, checks)
+            searching = self._checks() + int(_SEARCHING * (end - self._checks()))
+            new = self._search(searching, first)
+            if first and self.proven.best is not None:
+                return False
+            if self._paths:
+                self._improve(end)
+            number, size = number + 1, 2 * size
+            self._report(number, checks, new)
+        return self._monitor.expired()
+
+    def solution(self, interrupted: bool, seconds: float) -> Solution:
+        """The best path that is proven free.
+
+        Args:
+            interrupted: whether time limit or Ctrl-C ended the search.
+            seconds: time that it took [s].
+
+        Raises:
+            PathNotFound: there is none.
+        """
+        if self.proven.best is None:
+            raise path_not_found(self.space, self._restarts, self.proven, interrupted, seconds)
+        return self.proven.solution(self._restarts.trees, interrupted)
+
+    def _checks(self) -> int:
+        return int(self.space.arrays.setup[0]["checks"])
+
+    def _try_straight(self) -> bool:
+        """Whether the straight way is proven free and no path can cost less."""
+        space, arrival = self.space, np.zeros((2, 4))
+        arrival[0] = space.problem.start[3:7]
+        for goal in space.goals:
+            if fly(space.arrays, space.start, arrival[0], goal, arrival[1], True) == 1.0:
+                path = ImprovedPath(space, np.stack([space.start, goal]), arrival)
+                self._paths.append(path)
+                return self._prove(path) and space.problem.delta == 0.0
+        return False
+
+    def _search(self, until: int, first: bool) -> float:
+        """New paths, until so many configurations have been checked; the least cost of one."""
+        least = np.inf
+        while self._checks() < until or not self._paths:
+            if self._monitor.expired() or (not self._paths and self._checks() >= until):
+                break
+            found = self._restarts.find(until - self._checks(), self._monitor.expired)
+            if found is None:
+                continue
+            path = ImprovedPath(self.space, *found)
+            path.move(self._random, _AT_FIRST, self._monitor.expired)
+            path.thin(_THINNING)
+            if self.proven.best is None and self._prove(path) and first:
+                break
+            path.move(self._random, _FOR_NEW, self._monitor.expired)
+            path.thin(_THINNING)
+            least = min(least, path.cost)
+            self._keep(path)
+        return least
+
+    def _keep(self, path: ImprovedPath) -> None:
+        """Keep a path if it is among the best; of those that go one way round, the better one."""
+        for k, other in enumerate(self._paths):
+            if path.goes_with(other):
+                if path.cost < other.cost:
+                    self._paths[k] = path
+                break
+        else:
+            self._paths.append(path)
+        self._paths.sort(key=lambda each: each.cost)
+        del self._paths[self._ways :]
+
+    def _improve(self, until: int) -> None:
+        """Improve all paths that are kept, then the best of them, and prove it."""
+        share = max((until - self._checks()) // (2 * len(self._paths)), 1)
+        for path in self._paths:
+            self._work_on(path, self._checks() + share)
+        self._paths.sort(key=lambda each: each.cost)
+        self._work_on(self._paths[0], until)
+        if self.proven.is_worth_proving(self._paths[0].cost):
+            self._prove(self._paths[0])
+            self._paths = [path for path in self._paths if path.last > 0]
+
+    def _work_on(self, path: ImprovedPath, until: int) -> None:
+        """Improve one path until so many configurations have been checked."""
+        stop = self._monitor.expired
+        while (left := until - self._checks()) > 0 and not stop():
+            path.move(self._random, max(left // 3, 1), stop)
+            path.search_around(self._random, min(_AROUND, max(left // 3, 1)))
+            path.thin(min(_THINNING, max(left // 3, 1)))
+
+    def _prove(self, path: ImprovedPath) -> bool:
+        """Whether a path is proven free, after repairs where the proof of some edges fails."""
+        for _ in range(_ATTEMPTS):
+            if self.proven.take(path):
+                return True
+            if not path.repair(self._random, _AROUND):
+                break
+        path.last = 0  # it is no path any more
+        return False
+
+    def _report(self, number: int, checks: int, new: float) -> None:
+        """Note the round in the history, and tell the callback."""
+        rounds = max(number, int(np.ceil(np.log2(1.0 + checks / _FIRST_ROUND))))
+        unit = self.space.problem.length_unit
+        self.proven.note(new / unit, len(self._paths))
+        if self._monitor.on_cycle is None:
+            return
+        best = self.proven.best
+        path: Array = np.zeros((0, 3)) if best is None else best.motion.positions
+        objective = np.inf if best is None else best.objective
+        self._monitor.on_cycle(
+            TreeCycle(
+                number, rounds, objective, new / unit, self._checks(),
+                self._restarts.meetings.nodes, path,
+            )
+        )  # fmt: skip

@@ -1,0 +1,163 @@
+"""The configuration space of a problem: its coordinates and bounds, and the arrays of the search."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.dynamics.momentum import centers_of_mass
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.shape_arrays import BOX
+from ffsr_plan.tree_search.kernels.search_arrays import (
+    JOINTS,
+    LINK,
+    SETUP,
+    SHAPE,
+    TURN,
+    Records,
+    SearchArrays,
+)
+
+_STACK = 64  # entries of a stack for `nearest_sphere`
+_LEAST_STEP = 0.008  # [m] of travel between two checks
+_LARGEST_TURN = 0.15  # [rad or m] of a joint in a step of the integration
+_JOINT_WEIGHT = 0.6  # metres that a radian counts in distances of the search
+_BEYOND = 0.5  # [rad] beyond both ways round that a continuous joint may go
+_MOST_GOALS = 8  # ways round of continuous joints, shortest first
+
+
+class SearchSpace:
+    """Coordinates of a problem's states and what kernels need to fly between them.
+
+    Attributes:
+        problem: the problem.
+        start: (D,) state at the start.
+        goals: (G, D) states at the goal, one for each way round of the continuous joints, the
+            nearest first.
+        turn: (3,) rotation vector from the start's attitude to the goal's, base axes [rad]; zero
+            where the attitude reacts.
+        arrays: robot, scene and settings for kernels.
+    """
+
+    def __init__(self, problem: Problem, margin: float) -> None:
+        """Set up the search.
+
+        Args:
+            problem: a problem without a lattice.
+            margin: clearance that is kept from obstacles and between links [m].
+        """
+        self.problem = problem
+        robot, held = problem.robot, problem.mode.has_wheels
+        self.turn: Array = np.zeros(3)
+        if held:
+            self.turn = rotations.rotation_vector(problem.start[3:7], problem.goal[3:7])
+        self.start: Array = np.zeros(JOINTS + robot.nd)
+        self.start[:3] = problem.start[:3]
+        self.start[JOINTS:] = robot.joint_values(problem.start)
+        self.goals = self._goals()
+        self.arrays = SearchArrays(
+            links=_links(robot),
+            shapes=_shapes(robot),
+            pairs=np.array(
+                [(p.first, p.second) for p in robot.collision_model.collisionPairs], dtype=np.int64
+            ).reshape(-1, 2),
+            tree=problem.scene.tree,
+            setup=self._setup(margin),
+            box=self._box(),
+            weights=self._weights(),
+            bars=np.zeros((0, len(self.start) + 2)),
+            stack=np.zeros(_STACK, dtype=np.int32),
+            bounds=np.zeros(_STACK),
+            frame=np.zeros(15),
+            still=np.zeros(3),
+        )
+
+    def _goals(self) -> Array:
+        problem, robot = self.problem, self.problem.robot
+        goal = self.start.copy()
+        goal[:3] += problem.base_displacement
+        goal[TURN] = float(np.linalg.norm(self.turn))
+        change = problem.joint_displacement
+        free = np.isinf(robot.upper)
+        other = np.where(change > 0.0, change - 2.0 * np.pi, change + 2.0 * np.pi)
+        ways = [(own, there) if wide else (own,) for own, there, wide in zip(change, other, free, strict=True)]
+        goals = []
+        for steps in product(*ways):
+            each = goal.copy()
+            each[JOINTS:] += steps
+            goals.append(each)
+        lengths = [float(np.sum((each - self.start)[JOINTS:] ** 2)) for each in goals]
+        return np.array([goals[k] for k in np.argsort(lengths, kind="stable")[:_MOST_GOALS]])
+
+    def _box(self) -> Array:
+        problem, robot = self.problem, self.problem.robot
+        ends = np.vstack([self.start, self.goals])
+        box = np.stack([ends.min(axis=0), ends.max(axis=0)])
+        if not problem.mode.floats:
+            box[:, :3] = problem.base_window
+        free = np.isinf(robot.upper)
+        box[0, JOINTS:] = np.where(free, box[0, JOINTS:] - _BEYOND, robot.lower)
+        box[1, JOINTS:] = np.where(free, box[1, JOINTS:] + _BEYOND, robot.upper)
+        return box
+
+    def _weights(self) -> Array:
+        problem, robot = self.problem, self.problem.robot
+        weights = np.ones((2, len(self.start)))
+        weights[0, TURN:] = _JOINT_WEIGHT
+        weights[0, JOINTS:][robot.prismatic] = 1.0
+        weights[1, :TURN] = problem.position_weight
+        weights[1, TURN:] = problem.rotation_weight
+        weights[1, JOINTS:][robot.prismatic] = problem.position_weight
+        if problem.mode.floats:
+            weights[:, :3] = 0.0
+        return weights
+
+    def _setup(self, margin: float) -> Records:
+        problem = self.problem
+        setup = np.zeros(1, dtype=SETUP)
+        setup["reacts"], setup["floats"] = problem.mode.attitude_reacts, problem.mode.floats
+        angle = float(np.linalg.norm(self.turn))
+        setup["axis"] = self.turn / angle if angle > 0.0 else 0.0
+        center = centers_of_mass(problem.robot, self.start[None, JOINTS:])
+        setup["anchor"] = problem.start[:3] + rotations.rotate(problem.start[None, 3:7], center)[0]
+        setup["margin"] = setup["self_margin"] = margin
+        unit = problem.length_unit
+        setup["nearness_weight"] = problem.delta * unit**2
+        setup["cap"] = np.inf if problem.clearance_cap is None else problem.clearance_cap
+        setup["least_step"], setup["largest_turn"] = _LEAST_STEP, _LARGEST_TURN
+        return setup
+
+
+def _links(robot: SpaceRobot) -> Records:
+    """(n,) of `LINK`, the base at rest at the origin."""
+    tree = robot.tree
+    links = np.zeros(len(tree.parents), dtype=LINK)
+    links["parent"] = tree.parents
+    links["fixed"], links["sine"], links["versine"] = tree._fixed, tree._sine, tree._versine
+    links["offset"], links["slide"] = tree._offsets, tree._slide
+    links["turning"], links["sliding"] = tree._revolute_axes, tree._prismatic_axes
+    bodies = list(robot.model.inertias)[1:]
+    links["mass"] = [body.mass for body in bodies]
+    links["lever"] = [body.lever for body in bodies]
+    links["inertia"] = [body.inertia for body in bodies]
+    links["rotation"][0] = np.eye(3)
+    return links
+
+
+def _shapes(robot: SpaceRobot) -> Records:
+    """(g,) of `SHAPE`."""
+    given = robot.primitives
+    shapes = np.zeros(len(given.kinds), dtype=SHAPE)
+    shapes["link"], shapes["kind"] = given.links, given.kinds
+    shapes["rotation"], shapes["position"] = given.rotations, given.positions
+    shapes["frame"][:, 12:] = given.sizes
+    box = given.kinds == BOX
+    shapes["core"][box] = given.sizes[box]
+    shapes["core"][~box, 2] = given.sizes[~box, 1]
+    shapes["skin"][~box] = given.sizes[~box, 0]
+    shapes["reach"] = np.linalg.norm(shapes["core"], axis=1)
+    return shapes
