@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         InternalError,
         InvalidInput,
         NoPath,
+        PathNotFound,
         PlanningError,
         PlanNotVerified,
         PoseOutOfReach,
@@ -71,8 +72,17 @@ if TYPE_CHECKING:
     from ffsr_plan.search.ants.max_min import MaxMinAntSystem
     from ffsr_plan.search.optimum_planner import LatticeOptimum
     from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
-    from ffsr_plan.search.records import Cycle, History, SearchResult, Solution, Trails
+    from ffsr_plan.search.records import (
+        Branches,
+        Cycle,
+        History,
+        SearchResult,
+        Solution,
+        Trails,
+        TreeCycle,
+    )
     from ffsr_plan.trajectory.timed_plan import TimedPlan
+    from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.verify import Report
 
 __version__ = "0.2.0.dev0"
@@ -81,6 +91,7 @@ __all__ = [
     "AttitudeOutOfReach",
     "Axis",
     "Balanced",
+    "Branches",
     "Bus",
     "Certificate",
     "Clearance",
@@ -108,6 +119,7 @@ __all__ = [
     "NoPath",
     "PageServer",
     "Panel",
+    "PathNotFound",
     "Plan",
     "PlanNotVerified",
     "PlanningError",
@@ -132,6 +144,8 @@ __all__ = [
     "States",
     "TimedPlan",
     "Trails",
+    "TreeCycle",
+    "TreePlanner",
     "UncheckedLinks",
     "UnprovenPath",
     "Verdict",
@@ -169,6 +183,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "InternalError",
         "InvalidInput",
         "NoPath",
+        "PathNotFound",
         "PlanNotVerified",
         "PlanningError",
         "PoseOutOfReach",
@@ -211,8 +226,17 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "search.ants.max_min": ("MaxMinAntSystem",),
     "search.optimum_planner": ("LatticeOptimum",),
     "search.postures.posture_annealing": ("PostureAnnealing",),
-    "search.records": ("Cycle", "History", "SearchResult", "Solution", "Trails"),
+    "search.records": (
+        "Branches",
+        "Cycle",
+        "History",
+        "SearchResult",
+        "Solution",
+        "Trails",
+        "TreeCycle",
+    ),
     "trajectory.timed_plan": ("TimedPlan",),
+    "tree_search.tree_planner": ("TreePlanner",),
     "verification.verify": ("Report",),
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names}

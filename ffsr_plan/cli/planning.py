@@ -125,7 +125,8 @@ def plan_and_report(
 
 def _planning_words(scenario: Scenario) -> str:
     """What planning consists of; its parts interleave and cannot be timed one by one."""
-    refined = scenario.refine is not False and not scenario.problem.lattice.postures
+    lattice = scenario.problem.lattice
+    refined = scenario.refine is not False and lattice is not None and not lattice.postures
     return "search, proof, refinement" if refined else "search and proof"
 
 

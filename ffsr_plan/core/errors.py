@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, is_dataclass
@@ -17,10 +16,7 @@ from ffsr_plan.core.contacts import (
     contact_list,
     obstacle_name,
 )
-
-_MOST_CHARACTERS_OF_A_VALUE = 120
-_SIMILAR = 0.55  # share of letters in common from which a name counts as misspelt
-_MOST_CHARACTERS = 600  # of the field, and of what is allowed
+from ffsr_plan.core.formatting import nearest_name, on_one_line, shortened
 
 
 class FfsrPlanError(Exception):
@@ -59,8 +55,8 @@ class InvalidInput(FfsrPlanError, ValueError):
 
     def message(self) -> str:
         """What is wrong, the value and what is allowed, on one line."""
-        what, allowed = _on_one_line(self.what), _on_one_line(self.allowed)
-        return f"{what}: got {_shorten(self.value)}; allowed: {allowed}"
+        what, allowed = on_one_line(self.what), on_one_line(self.allowed)
+        return f"{what}: got {shortened(self.value)}; allowed: {allowed}"
 
 
 class UncheckedLinks(UserWarning):
@@ -318,10 +314,9 @@ class PathNotFound(PlanningError):
         tries: number of searches by trees.
         nodes: nodes of all trees.
         meetings: how often a tree from the start met one from the goal.
-        refused: how often a path was found that could not be proven free.
-        apart: distance at which the last trees came nearest to each other, in which a metre counts
-            as much as 1.7 rad [m].
-        contact: what is in the way there; None where it is not known.
+        refused: paths that could not be proven free.
+        apart: least distance of the last two trees, in which 0.6 m count as a radian [m].
+        contact: what is in the way there, if anything.
         advice: what may help.
     """
 
@@ -336,18 +331,14 @@ class PathNotFound(PlanningError):
 
     def message(self) -> str:
         """What was tried, what is in the way, and what may help."""
-        proof = f", {self.refused} paths could not be proven free" if self.refused else ""
-        way = ""
+        proof = f", {self.refused} paths refused by the proof" if self.refused else ""
+        way = f"; the trees came as near to each other as {self.apart:.3g} m"
         if self.contact is not None:
             link, obstacle, depth, source = self.contact
-            name = obstacle_name(obstacle, source)
-            way = f"; where the trees came nearest, {self.apart:.3g} m apart, link '{link}' "
-            way += f"is {-depth:.3g} m from {name}"
-        return (
-            f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
-            f"nodes, {self.meetings} meetings of the trees from start and goal{proof}{way}"
-            + _helping(self.advice)
-        )
+            way += f", with link '{link}' {-depth:.3g} m from {obstacle_name(obstacle, source)}"
+        text = f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
+        text += f"nodes, {self.meetings} meetings of the trees from start and goal{proof}{way}"
+        return text + _helping(self.advice)
 
 
 @dataclass(eq=False, repr=False)
@@ -405,37 +396,5 @@ def unknown_name(
     return InvalidInput(what, value, f"{', '.join(known) or none}{hint}")
 
 
-def nearest_name(value: object, names: Iterable[str]) -> str | None:
-    """The name most similar to a value, whatever the case of the letters; None if none is close.
-
-    Of a word for another thing, such as `diameter`, half of the letters are often those of a name.
-    """
-    given = str(value)[:_MOST_CHARACTERS_OF_A_VALUE].casefold()
-    known = {name.casefold(): name for name in reversed(list(names))}
-    similar = difflib.get_close_matches(given, known, n=1, cutoff=_SIMILAR)
-    return known[similar[0]] if similar else None
-
-
 def _helping(advice: tuple[str, ...]) -> str:
     return f"; what may help: {'; '.join(advice)}" if advice else ""
-
-
-def _shorten(value: object) -> str:
-    """The value as Python shows it, cut short; values that cannot be shown by their type."""
-    most = _MOST_CHARACTERS_OF_A_VALUE
-    if isinstance(value, int) and value.bit_length() > 4 * most:
-        return f"a whole number of {value.bit_length()} bits"
-    try:
-        text = _on_one_line(repr(value))
-    except Exception:  # a `__repr__` may raise anything, for example for an integer too long
-        return f"an object of the class {type(value).__name__}"
-    return text if len(text) <= most else f"{text[: most - 3]}..."
-
-
-def _on_one_line(text: str) -> str:
-    """A text without line ends and control characters, its middle left out if it is long."""
-    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in " ".join(text.split()))
-    if len(shown) <= _MOST_CHARACTERS:
-        return shown
-    part = _MOST_CHARACTERS // 2
-    return f"{shown[:part]} ... {shown[-part:]}"

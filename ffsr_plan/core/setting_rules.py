@@ -15,7 +15,8 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, ReadOnlyDict
 from ffsr_plan.core.checks import finite_array, number, one_of, path, truth, whole_number
-from ffsr_plan.core.errors import InvalidInput, nearest_name
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import nearest_name
 from ffsr_plan.core.settings import Given, UnknownKey, from_mapping
 
 Vector = Given[Array, ArrayLike]

@@ -21,7 +21,8 @@ from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 from ffsr_plan.core.arrays import content
-from ffsr_plan.core.errors import InvalidInput, nearest_name
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import nearest_name
 
 if sys.version_info >= (3, 11):
     from typing import dataclass_transform

@@ -12,6 +12,7 @@ from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.text_files import write_files
 from ffsr_plan.display.picture_data import drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.projection import outlines, view_axes
+from ffsr_plan.search.records import Trails
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 _START, _GOAL, _PATH, _OBSTACLE, _ROBOT = "#2a7f9e", "#2f8f4e", "#d95f02", "#9aa0a8", "#3b4252"
 _TRAILS, _CONTACT = "#7a5fa8", "#b02a30"
+_ANTS, _TREES = "ants' trails, darker with more pheromone", "trees from start (dark) and goal"
 _NUMBERED = 30  # scenes of at most so many obstacles have their indices written in
 _SAMPLES = 401  # of the base's track
 
@@ -53,7 +55,7 @@ def path_figure(plan: PlanData, silhouettes: int = 9, axes: Axes | None = None) 
     axes.autoscale_view()
     axes.margins(0.03)
     axes.set_xlabel("along the path frame's z' [m]")
-    projected = ", projected along the normal y'" if plan.problem.lattice.normal is not None else ""
+    projected = ", projected along the normal y'" if _leaves_plane(plan) else ""
     axes.set_ylabel(f"lateral x' [m]{projected}")
     axes.set_title(
         f"L = {plan.length:.2f} m, F = {plan.objective:.1f}, δ = {plan.problem.delta:g}, "
@@ -77,7 +79,7 @@ def clearance_figure(
     """
     from ffsr_plan.collision.distances import ObstacleQuery
 
-    m = plan.problem.lattice.divisions
+    m = plan.edges
     s = np.linspace(0.0, 1.0, m * samples_per_edge + 1)
     query = ObstacleQuery(plan.problem.robot, plan.problem.scene)
     figure, axes = _axes(axes, 7.0, 3.2)
@@ -157,6 +159,15 @@ def figure_files(plan: PlanData) -> dict[str, bytes]:
     return files
 
 
+def _leaves_plane(plan: PlanData) -> bool:
+    """Whether the base may leave the plane of the picture."""
+    problem = plan.problem
+    if problem.lattice is not None:
+        return problem.lattice.normal is not None
+    across = plan.motion.positions @ view_axes(problem)[2]
+    return bool(np.ptp(across) > 1e-9)
+
+
 def _axes(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes]:
     """The given axes, or those of a new figure of a size in inches."""
     from matplotlib.figure import Figure
@@ -190,11 +201,12 @@ def _draw_trails(axes: Axes, plan: PlanData, view: Array) -> None:
     segments, strength = trail_segments(plan)
     if not len(segments):
         return
+    ants = isinstance(plan.trails, Trails)
     trails = LineCollection(list(segments @ view.T), array=strength, cmap="Purples", zorder=1)
     trails.set_clim(-0.4, 1.0)
     trails.set_linewidth((0.5 + 1.5 * strength).tolist())
     axes.add_collection(trails)
-    axes.plot([], [], color=_TRAILS, lw=1.2, label="ants' trails, darker with more pheromone")
+    axes.plot([], [], color=_TRAILS, lw=1.2, label=_ANTS if ants else _TREES)
 
 
 def _draw_silhouettes(axes: Axes, plan: PlanData, count: int) -> None:

@@ -13,6 +13,7 @@ from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.search.records import Branches, Trails
 
 _SOLID_COUNT = 60  # scenes of at most so many obstacles are drawn solid as a whole
 _SOLID_DISTANCE = 0.8  # in larger scenes, distance [m] from the robot up to which they are
@@ -66,7 +67,7 @@ def motion_frames(robot: SpaceRobot, configurations: Array) -> MotionFrames:
 
 
 def trail_segments(plan: PlanData, most: int = 3000) -> tuple[Array, Array]:
-    """Edges that the ants walked, weak ones first.
+    """Edges that the ants walked, weak ones first; without a lattice, edges of the trees.
 
     Args:
         plan: the plan.
@@ -75,9 +76,12 @@ def trail_segments(plan: PlanData, most: int = 3000) -> tuple[Array, Array]:
     Returns:
         Ends (k, 2, 3) of the edges, base origin in the world [m], and strengths (k,) in [0, 1].
         Half of the strength stands for the pheromone ever laid on the edge, half for the ants that
-        walked it. Both scales are logarithmic, so that early trails are visible too.
+        walked it. Both scales are logarithmic, so that early trails are visible too. The tree from
+        the start is strong, that from the goal is weak.
     """
     lattice, trails = plan.lattice, plan.trails
+    if lattice is None or isinstance(trails, Branches):
+        return _branch_segments(trails, most)
     if not len(trails.layer):
         return np.zeros((0, 2, 3)), np.zeros(0)
     strength = 0.5 * (_logarithmic(trails.laid) + _logarithmic(trails.ants))
@@ -86,6 +90,15 @@ def trail_segments(plan: PlanData, most: int = 3000) -> tuple[Array, Array]:
     begin = lattice.nominal.positions[layer] + lattice.offsets[tail]
     end = lattice.nominal.positions[layer + 1] + lattice.offsets[head]
     return np.stack([begin, end], axis=1), strength[order]
+
+
+def _branch_segments(branches: Trails | Branches, most: int) -> tuple[Array, Array]:
+    """Edges of the trees; of many, some at equal distances in their order."""
+    if not isinstance(branches, Branches) or not len(branches.tree):
+        return np.zeros((0, 2, 3)), np.zeros(0)
+    chosen = slice(None, None, max(1, -(-len(branches.tree) // most)))
+    ends = np.stack([branches.begin[chosen], branches.end[chosen]], axis=1)
+    return ends, np.where(branches.tree[chosen] == 0, 0.6, 0.2)
 
 
 def near_track(scene: Scene, positions: Array, within: float) -> Flags:

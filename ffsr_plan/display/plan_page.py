@@ -23,6 +23,7 @@ from ffsr_plan.display.scene_objects import (
     set_up,
 )
 from ffsr_plan.display.web.html_template import html_page
+from ffsr_plan.search.records import Trails
 
 if TYPE_CHECKING:
     from ffsr_plan.plans.plan_data import PlanData
@@ -53,7 +54,7 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
     log = CommandLog()
     viewer = meshcat.Visualizer(window=log)
     problem, scene = plan.problem, plan.problem.scene
-    samples = problem.lattice.divisions * frames_per_edge(plan) + 1
+    samples = plan.edges * frames_per_edge(plan) + 1
 
     size = {"frames": samples, "joints": problem.robot.nd + 1}
     check_memory("page", size, _BYTES_PER_POSE, "a plan with fewer divisions")
@@ -75,7 +76,7 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
         "clearances": [round(float(c), 5) if np.isfinite(c) else None for c in clearances],
         "rotations": np.degrees(angle_between(attitudes[0], attitudes)).round(3).tolist(),
         "view": view,
-        "ants": bool(len(plan.trails.layer)),
+        "ants": isinstance(plan.trails, Trails) and bool(len(plan.trails.layer)),
         "playing": playing,
     }
     return html_page("plan", data)

@@ -61,8 +61,8 @@ class Motion:
             positions: (m + 1, 3) base origin at the corners, world [m].
             joint_values: (m + 1, nd) at the corners; without them the joints move steadily from
                 start to goal, continuous ones the shorter way round.
-            turn_shares: (m + 1,) share of the rotation from start to goal that wheels have turned the
-                base by at each corner, from 0 to 1; without it the base turns steadily.
+            turn_shares: (m + 1,) share of the rotation from start to goal that wheels have turned
+                the base by at each corner, from 0 to 1; without it the base turns steadily.
 
         Raises:
             InvalidInput: an argument of another kind, shape or size, or not finite.

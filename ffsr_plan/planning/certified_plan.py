@@ -152,7 +152,7 @@ class Plan(PlanData):
         Raises:
             InvalidInput: a file that cannot be written, or fewer than two samples.
         """
-        rows = self.problem.lattice.divisions + 1
+        rows = self.edges + 1
         if samples is not None:
             rows = whole_number("samples", samples, at_least=2, at_most=1_000_000)
         target, columns = checked_path("path", path), 11 + self.problem.robot.nd

@@ -159,7 +159,9 @@ def _request(
         raise InvalidInput("on_cycle", on_cycle, "a callback only where colonies = 1")
     first = one_of("until", until, ("end", "first")) == "first"
     if first and not isinstance(planner, TreePlanner):
-        raise InvalidInput("until", until, f"'end' with {planner.name}, or a problem without lattice")
+        raise InvalidInput(
+            "until", until, f"'end' with {planner.name}, or a problem without lattice"
+        )
     seconds = math.inf if time_limit is None else number("time_limit", time_limit, above=0.0)
     return SearchRequest(
         refine=None if refine is None else truth("refine", refine),

@@ -17,6 +17,7 @@ from ffsr_plan.dynamics.wheel_momentum import WheelMomentum, wheel_momentum
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.plans.planner_registry import Planner
+from ffsr_plan.problem.free_objective import whole_objective
 from ffsr_plan.problem.objective import motion_objective
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
@@ -32,18 +33,23 @@ class PlanData:
         problem: what was planned.
         planner: the planner's settings.
         seed: the seed, or None if a generator was handed over.
-        lattice: the lattice that was searched, of base offsets.
+        lattice: the lattice that was searched, of base offsets; None without one.
         motion: the motion that was proven free; `at` evaluates it.
         nodes: offset indices along the path, 0 = no offset: (m + 1,), or (m + 1, axes) where the
-            lattice has several axes (lateral, normal, postures in this order).
-        length: L of Eq. 6 [m].
-        objective: F of Eq. 8 [length units], which contains the clearances at the nodes;
-            `motion_objective` contains those between them too.
-        lattice_objective: F of the path on the lattice, before refinement.
-        optimum: F of the exact lattice optimum; with posture axes a lower bound on it.
+            lattice has several axes (lateral, normal, postures in this order); (0,) without a
+            lattice.
+        length: L of Eq. 6 [m]; without a lattice, the length in base position, wheels' turn and
+            joint values with the same weights.
+        objective: F of Eq. 8 [length units], which contains the clearances at the nodes, or without
+            a lattice at 39 stations at equal steps of L; `motion_objective` contains those between
+            them too.
+        lattice_objective: F of the path on the lattice, before refinement; F without a lattice.
+        optimum: F of the exact lattice optimum; with posture axes a lower bound on it, and without
+            a lattice F of the straight way past obstacles that are `clearance_cap` away.
         clearances: (m + 1,) least link-to-sphere distance at each node [m].
         history: per cycle, best F, best and mean F of the cycle, number of different paths.
-        trails: the edges that ants walked, with ants and pheromone.
+        trails: the edges that ants walked, with ants and pheromone; without a lattice, the
+            branches of the trees.
         certificate: edges proven, Coal queries spent, proven clearance along the whole motion.
         interrupted: whether Ctrl-C or the time limit ended the search early.
         seconds: computing time [s], without that for compiling kernels at their first use.
@@ -75,11 +81,14 @@ class PlanData:
     def motion_objective(self) -> float:
         """F of the whole motion [length units]: L + delta sum over all edges of 1 / d.
 
-        Here d is the least clearance sampled on the edge, whereas `objective` contains the
-        clearances at the nodes only. Refinement lowers this value. An edge is sampled at 2, 4, 8
-        and at most 16 equal steps, until no point can travel farther over a step than d.
+        Without a lattice the sum is over the 40 pieces between the stations. Here d is the least
+        clearance sampled on the edge, whereas `objective` contains the clearances at the nodes
+        only. Refinement lowers this value. An edge is sampled at 2, 4, 8 and at most 16 equal
+        steps, until no point can travel farther over a step than d.
         """
         problem, still = self.problem, np.zeros((self.motion.edges + 1, 3))
+        if problem.lattice is None:
+            return whole_objective(problem, self.motion, self.length)
         if problem.delta == 0.0:
             return motion_objective(problem, self.length, np.full(self.motion.edges, np.inf))
         prover = Prover(self.motion, problem.scene, problem.tolerance)
@@ -88,8 +97,14 @@ class PlanData:
         return motion_objective(problem, self.length, least)
 
     @property
+    def edges(self) -> int:
+        """m, the number of edges; on a lattice, of its divisions."""
+        lattice = self.problem.lattice
+        return self.motion.edges if lattice is None else lattice.divisions
+
+    @property
     def gap(self) -> float:
-        """(lattice_objective - optimum) / optimum; `optimum` is a bound with posture axes."""
+        """(lattice_objective - optimum) / optimum; see `optimum_is_exact`."""
         above = self.lattice_objective - self.optimum
         if above <= 0.0:
             return 0.0
@@ -100,7 +115,8 @@ class PlanData:
         """Whether `optimum` is the exact lattice optimum, and not only a lower bound on it.
 
         With posture axes the cost of a node depends on the path that leads to it, and `gap` is the
-        distance from a bound that no path of the lattice falls below.
+        distance from a bound that no path of the lattice falls below. Without a lattice no path at
+        all falls below the bound.
         """
         lattice = self.problem.lattice
         return lattice is not None and not lattice.postures

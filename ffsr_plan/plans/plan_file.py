@@ -17,6 +17,7 @@ from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_reading import PLAIN, plan_of
 from ffsr_plan.plans.plan_tables import FORMAT
 from ffsr_plan.plans.robot_table import robot_table
+from ffsr_plan.search.records import Branches, Trails
 
 _LARGEST_FILE = 500_000_000  # [bytes]; reading takes about ten times as much memory
 
@@ -39,9 +40,10 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
             },
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),
-            "lattice": dataclasses.asdict(problem.lattice),
+            "lattice": None if problem.lattice is None else dataclasses.asdict(problem.lattice),
             "mode": problem.mode.value,
             **{name: getattr(problem, name) for name in PLAIN},
+            **_given("window", problem.window),
         },
         "planner": {"name": plan.planner.name, **dataclasses.asdict(plan.planner)},
         "seed": plan.seed,
@@ -51,6 +53,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
             "joint_values": None
             if plan.motion.joints_are_straight
             else plan.motion.joint_values.tolist(),
+            **_given("turn_shares", plan.motion.turn_shares),
         },
         "configurations": plan.configurations.tolist(),
         "length": plan.length,
@@ -62,7 +65,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
             k: v.tolist() if k == "distinct" else _without_infinity(v)
             for k, v in plan.history._asdict().items()
         },
-        "trails": {k: v.tolist() for k, v in plan.trails._asdict().items()},
+        **_search_edges(plan),
         "certificate": {
             **plan.certificate.counts._asdict(),
             "least_clearance": _without_infinity(np.array([plan.certificate.least_clearance]))[0],
@@ -70,6 +73,21 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
         "interrupted": plan.interrupted,
         "seconds": plan.seconds,
     }
+
+
+def _given(name: str, values: NDArray[np.float64] | None) -> dict[str, Any]:
+    """A table of one entry; of none without values, as in files of older versions."""
+    return {} if values is None else {name: values.tolist()}
+
+
+def _search_edges(plan: PlanData) -> dict[str, Any]:
+    """Trails of ants, and branches of trees where there are any."""
+    found = plan.trails
+    trails = Trails.none() if isinstance(found, Branches) else found
+    tables: dict[str, Any] = {"trails": {k: v.tolist() for k, v in trails._asdict().items()}}
+    if isinstance(found, Branches):
+        tables["branches"] = {k: v.tolist() for k, v in found._asdict().items()}
+    return tables
 
 
 def write(plan: PlanData, path: Path) -> None:

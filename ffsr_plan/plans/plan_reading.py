@@ -19,12 +19,13 @@ from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_tables import PlanTable, ProblemTable, RobotTable
 from ffsr_plan.plans.robot_table import robot_table
 from ffsr_plan.plans.search_figures import check_search
+from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import Containers
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
-from ffsr_plan.search.records import History, Trails
+from ffsr_plan.search.records import Branches, History, Trails
 
 PLAIN = (
     "delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight",
@@ -46,9 +47,11 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
     table = _within(what, "", lambda: from_mapping(PlanTable, data))
     _check_sizes(what, table)
     problem = _problem(what, table.problem)
-    lattice = _within(what, "problem.lattice", lambda: LayeredLattice(problem))
+    lattice = None
+    if problem.lattice is not None:
+        lattice = _within(what, "problem.lattice", lambda: LayeredLattice(problem))
+        _check_nodes(what, table, problem.lattice)
     _within(what, "planner", lambda: table.planner.refuse(problem))
-    _check_nodes(what, table, problem)
     check_search(what, table, problem)
     least = table.certificate.least_clearance
     counts = table.certificate
@@ -65,7 +68,7 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
         optimum=table.optimum,
         clearances=table.clearances,
         history=History(*(getattr(table.history, name) for name in History._fields)),
-        trails=Trails(*(getattr(table.trails, name) for name in Trails._fields)),
+        trails=_search_edges(what, table),
         certificate=Certificate(
             counts.edges_free, counts.edges_refused, counts.node_queries, counts.edge_queries,
             np.inf if least is None else least, problem.robot.unchecked_links,
@@ -94,10 +97,15 @@ def _within(what: str, path: str, make: Callable[[], T]) -> T:
 
 def _check_sizes(what: str, table: PlanTable) -> None:
     """Raise `InvalidInput` where lists do not fit the number of divisions, or one another."""
-    corners, lattice = table.problem.lattice.divisions + 1, table.problem.lattice
-    axes = len(lattice.axes) + len(lattice.postures)
+    lattice = table.problem.lattice
+    if lattice is None:
+        corners = len(table.motion.positions)
+        nodes: tuple[int, ...] = (0,)
+    else:
+        corners, axes = lattice.divisions + 1, len(lattice.axes) + len(lattice.postures)
+        nodes = (corners, axes) if axes > 1 else (corners,)
     rows = {
-        "nodes": (table.nodes, (corners, axes) if axes > 1 else (corners,)),
+        "nodes": (table.nodes, nodes),
         "clearances": (table.clearances, (corners,)),
         "motion.positions": (table.motion.positions, (corners, 3)),
         "configurations": (table.configurations, (corners, len(table.problem.start))),
@@ -129,6 +137,7 @@ def _problem(what: str, table: ProblemTable) -> Problem:
             goal=table.goal,
             lattice=table.lattice,
             mode=table.mode,
+            window=table.window,
             **{name: getattr(table, name) for name in PLAIN},
         ),
     )
@@ -191,7 +200,15 @@ def _motion(what: str, table: PlanTable, problem: Problem) -> Motion:
     motion = _within(
         what,
         "motion",
-        lambda: Motion(robot, problem.mode, problem.start, problem.goal, positions, values),
+        lambda: Motion(
+            robot,
+            problem.mode,
+            problem.start,
+            problem.goal,
+            positions,
+            values,
+            table.motion.turn_shares,
+        ),
     )
     stored, made = table.configurations, motion.configurations()
     if stored.shape != made.shape or not np.max(np.abs(stored - made)) <= _AGREEMENT:
@@ -200,6 +217,25 @@ def _motion(what: str, table: PlanTable, problem: Problem) -> Motion:
     if not apart <= _AGREEMENT:  # where the robot floats, they follow from the joints
         raise InvalidInput(f"{what}, motion.positions", "others", "those of its joint values")
     return motion
+
+
+def _search_edges(what: str, table: PlanTable) -> Trails | Branches:
+    """Trails of ants, or branches of trees without a lattice."""
+    branches, free = table.branches, table.problem.lattice is None
+    if (branches is None) == free:
+        allowed = "branches of the trees" if free else "none on a lattice"
+        raise InvalidInput(f"{what}, branches", branches, allowed)
+    if branches is None:
+        return Trails(*(getattr(table.trails, name) for name in Trails._fields))
+    rows = len(branches.tree)
+    for name in ("begin", "end"):
+        shape = getattr(branches, name).shape
+        if shape != (rows, 3) and not (rows == 0 and shape[0] == 0):
+            raise InvalidInput(f"{what}, branches.{name}", shape, f"the shape {(rows, 3)}")
+    if np.any(branches.tree > 1):
+        raise InvalidInput(f"{what}, branches.tree", int(branches.tree.max()), "0 or 1")
+    begin, end = (getattr(branches, name).reshape(rows, 3) for name in ("begin", "end"))
+    return Branches(begin, end, branches.tree)
 
 
 def _check_joint_values(what: str, values: Array, robot: SpaceRobot) -> None:
@@ -215,9 +251,8 @@ def _check_joint_values(what: str, values: Array, robot: SpaceRobot) -> None:
             raise InvalidInput(f"{what}, {name}", step, f"steps of at most {_LARGEST_STEP:g}")
 
 
-def _check_nodes(what: str, table: PlanTable, problem: Problem) -> None:
+def _check_nodes(what: str, table: PlanTable, lattice: Lattice) -> None:
     """Raise `InvalidInput` for nodes that the lattice does not have."""
-    lattice = problem.lattice
     counts = {name: getattr(lattice, name).half_count for name in lattice.axes}
     known = {name: range(-n, n + 1) for name, n in counts.items()}
     known |= {f"postures.{k}": axis.indices for k, axis in enumerate(lattice.postures)}

@@ -31,14 +31,18 @@ def plan_rows(plan: PlanData, duration: float | None = None) -> list[tuple[str, 
 
 def _objective_rows(plan: PlanData) -> list[tuple[str, str]]:
     bound = "optimum" if plan.optimum_is_exact else "lower bound"
-    lattice = f"F {plan.lattice_objective:.4f}, {bound} {plan.optimum:.4f}, gap {plan.gap:.3%}"
+    figures = f"{bound} {plan.optimum:.4f}, gap {plan.gap:.3%}"
     value = f"{plan.objective:.4f}"
     if plan.problem.delta > 0.0 and len(plan.problem.scene):
         value += f", {plan.motion_objective:.4f} with the clearance between nodes"
     return [
         ("length L", f"{plan.length:.4f} m"),
         ("objective F", value),
-        ("on the lattice", lattice),
+        (
+            ("without a lattice", figures)
+            if plan.lattice is None
+            else ("on the lattice", f"F {plan.lattice_objective:.4f}, {figures}")
+        ),
     ]
 
 
@@ -60,7 +64,7 @@ def _attitude_rows(plan: PlanData, duration: float | None) -> list[tuple[str, st
     if plan.arrival_attitude_error is not None:
         error = np.degrees(plan.arrival_attitude_error)
         rows.append(("goal attitude", _reached(float(error))))
-    elif plan.problem.mode.attitude_reacts and plan.problem.lattice.postures:
+    elif plan.problem.mode.attitude_reacts and not plan.optimum_is_exact:
         away = np.degrees(angle_between(plan.configurations[-1, 3:7], plan.problem.goal[3:7]))
         rows.append(("goal attitude", f"not demanded, {away:.3f}° away"))
     if plan.problem.mode.has_wheels and duration is not None:
@@ -84,7 +88,8 @@ def _search_rows(plan: PlanData) -> list[tuple[str, str]]:
         f"{proof.node_queries} + {proof.edge_queries} distance queries (nodes + edges)"
     )
     cycles = len(plan.history.best)
-    search = "" if plan.planner.exact else f", seed {plan.seed}, {counted(cycles, 'cycle')}"
+    unit = "round" if plan.lattice is None else "cycle"
+    search = "" if plan.planner.exact else f", seed {plan.seed}, {counted(cycles, unit)}"
     interrupted = ", interrupted: the best so far" if plan.interrupted else ""
     return [
         ("certified", certified),

@@ -171,7 +171,7 @@ class ProblemTable:
     scene: SceneTable
     start: Annotated[Any, Columns()]
     goal: Annotated[Any, Columns()]
-    lattice: Lattice
+    lattice: Lattice | None
     mode: Annotated[Any, AnyValue()]
     delta: Annotated[Any, AnyValue()]
     length_unit: Annotated[Any, AnyValue()]
@@ -180,6 +180,7 @@ class ProblemTable:
     rotation_weight: Annotated[Any, AnyValue()]
     tolerance: Annotated[Any, AnyValue()]
     reach_attitude: Annotated[Any, AnyValue()]
+    window: Annotated[Any, AnyValue()] = None
 
 
 @settings
@@ -188,6 +189,7 @@ class MotionTable:
 
     positions: Annotated[Any, Columns((2,))]
     joint_values: Annotated[Any, Columns((2,))] | None
+    turn_shares: Annotated[Any, Columns()] | None = None
 
 
 @settings
@@ -210,6 +212,15 @@ class TrailsTable:
     ants: Annotated[Any, Columns(whole=True, at_least=1)]
     laid: Annotated[Any, Columns(at_least=0)]
     pheromone: Annotated[Any, Columns(at_least=0)]
+
+
+@settings
+class BranchesTable:
+    """Edges of the trees of a search."""
+
+    begin: Annotated[Any, Columns((2,))]
+    end: Annotated[Any, Columns((2,))]
+    tree: Annotated[Any, Columns(whole=True, at_least=0)]
 
 
 @settings
@@ -244,3 +255,4 @@ class PlanTable:
     certificate: CertificateTable
     interrupted: Annotated[bool, Truth()]
     seconds: Annotated[float, Number(at_least=0.0)]
+    branches: BranchesTable | None = None

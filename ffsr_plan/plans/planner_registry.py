@@ -20,7 +20,7 @@ PLANNERS: dict[str, type[Planner]] = {
 
 
 def default_planner(lattice: Lattice | None) -> Planner:
-    """`TreePlanner` without a lattice, `PostureAnnealing` with posture axes, or `MaxMinAntSystem`."""
+    """`TreePlanner` without a lattice, else `PostureAnnealing` or `MaxMinAntSystem`."""
     if lattice is None:
         return TreePlanner()
     return PostureAnnealing() if lattice.postures else MaxMinAntSystem()

@@ -6,6 +6,7 @@ import numpy as np
 
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.plans.plan_tables import PlanTable
+from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 
 _ROUNDING = 1e-9  # share of F by which sums of the same costs differ
@@ -24,12 +25,13 @@ def check_search(what: str, table: PlanTable, problem: Problem) -> None:
         InvalidInput: with the path of the field.
     """
     _check_history(what, table, problem)
-    _check_trails(what, table, problem)
+    if problem.lattice is not None:
+        _check_trails(what, table, problem.lattice)
     most = table.lattice_objective
     if table.optimum > most * (1.0 + _ROUNDING):
         allowed = f"at most lattice_objective, {most!r}"
         raise InvalidInput(f"{what}, optimum", table.optimum, allowed)
-    edges, path = table.certificate.edges_free, problem.lattice.divisions
+    edges, path = table.certificate.edges_free, len(table.motion.positions) - 1
     if edges < path:
         allowed = f"at least {path}, the edges of the path"
         raise InvalidInput(f"{what}, certificate.edges_free", edges, allowed)
@@ -53,19 +55,21 @@ def _check_history(what: str, table: PlanTable, problem: Problem) -> None:
     for k in np.flatnonzero(best > cycle * (1.0 + _ROUNDING) + slack)[:1]:
         allowed = f"at most history.iteration_best, {float(cycle[k])!r}"
         raise InvalidInput(f"{what}, history.best.{k}", float(best[k]), allowed)
-    least = 0.0 if problem.lattice.postures else table.lattice_objective
+    postures = problem.lattice is not None and bool(problem.lattice.postures)
+    least = 0.0 if postures else table.lattice_objective
     for k in np.flatnonzero(best < least * (1.0 - _ROUNDING))[:1]:
         allowed = f"at least lattice_objective, {least!r}"
         raise InvalidInput(f"{what}, history.best.{k}", float(best[k]), allowed)
-    ants = getattr(table.planner, "ants", 1)
-    for k in np.flatnonzero(history.distinct > ants)[:1]:
-        allowed = f"at most {ants}, the ants of the planner"
+    own = "ants" if problem.lattice is not None else "ways"
+    most = getattr(table.planner, own, 1)
+    for k in np.flatnonzero(history.distinct > most)[:1]:
+        allowed = f"at most {most}, the {own} of the planner"
         raise InvalidInput(f"{what}, history.distinct.{k}", int(history.distinct[k]), allowed)
 
 
-def _check_trails(what: str, table: PlanTable, problem: Problem) -> None:
+def _check_trails(what: str, table: PlanTable, lattice: Lattice) -> None:
     """Raise `InvalidInput` for edges that the lattice does not have, or that are there twice."""
-    lattice, trails = problem.lattice, table.trails
+    trails = table.trails
     offsets = int(np.prod([2 * getattr(lattice, n).half_count + 1 for n in lattice.axes]))
     for end, most in (("layer", lattice.divisions), ("tail", offsets), ("head", offsets)):
         walked = getattr(trails, end)

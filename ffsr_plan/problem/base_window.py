@@ -15,7 +15,9 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Rule
 from ffsr_plan.robots.robot import SpaceRobot
 
-_PARALLEL = 1e-9  # sine of an angle, or metres, up to which an axis counts as parallel or a way flat
+_PARALLEL = (
+    1e-9  # sine of an angle, or metres, up to which an axis counts as parallel or a way flat
+)
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,9 @@ def _plane(robot: SpaceRobot, attitude: Array) -> int | None:
     axes = (poses.rotations[0] @ robot.tree.axes[..., None])[1:, :, 0]
     axes = np.abs(rotations.rotate(np.broadcast_to(attitude, (len(axes), 4)), axes))
     for normal in range(3):
-        along = np.where(robot.prismatic, np.sqrt(np.maximum(1.0 - axes[:, normal] ** 2, 0.0)), axes[:, normal])
+        along = np.where(
+            robot.prismatic, np.sqrt(np.maximum(1.0 - axes[:, normal] ** 2, 0.0)), axes[:, normal]
+        )
         if len(axes) and np.all(along >= 1.0 - _PARALLEL):
             return normal
     return None

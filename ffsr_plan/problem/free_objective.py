@@ -1,22 +1,24 @@
 """Length L and objective F of a path without a lattice.
 
 L is the Euclidean length in base position, wheels' turn and joint values with the weights of Eq. 4,
-and F = L + delta sum of 1 / d, in units of length. The clearances d are taken at 39 stations at equal
-steps of L, as many as the inner nodes of a lattice of 40 divisions: for the straight path F is that of
-Eq. 8 on such a lattice, and corners that are added to a path do not change it.
+and F = L + delta sum of 1 / d, in units of length. The clearances d are taken at 39 stations at
+equal steps of L, as many as the inner nodes of a lattice of 40 divisions: for the straight path F
+is that of Eq. 8 on such a lattice, and corners that are added to a path do not change it.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.problem.objective import objective
+from ffsr_plan.problem.objective import motion_objective, objective
 from ffsr_plan.problem.problem import Problem
 
 STATIONS = 39
 """Points of a path at which F counts the clearance."""
+_SAMPLES = 16  # steps of a piece between two stations
 
 
 def edge_lengths(problem: Problem, motion: Motion) -> Array:
@@ -69,6 +71,31 @@ def free_objective(problem: Problem, length: float, clearances: Array) -> float:
         F [length units].
     """
     return objective(problem, length, np.concatenate([[np.inf], clearances, [np.inf]]))
+
+
+def whole_objective(problem: Problem, motion: Motion, length: float) -> float:
+    """F of a whole motion: the sum is over the pieces between the stations.
+
+    Each piece counts with the least clearance of 17 samples.
+
+    Args:
+        problem: gives obstacles, delta, the unit of length and the largest clearance that counts.
+        motion: the motion.
+        length: L [m].
+
+    Returns:
+        The value [length units].
+    """
+    pieces = STATIONS + 1
+    if problem.delta == 0.0:
+        return motion_objective(problem, length, np.full(pieces, np.inf))
+    edge, time = stations(edge_lengths(problem, motion), pieces * _SAMPLES - 1)
+    query = ObstacleQuery(problem.robot, problem.scene)
+    inner = query.distances(motion.at(edge, time))
+    ends = query.distances(motion.configurations()[[0, -1]])
+    all_of_them = np.concatenate([ends[:1], inner, ends[1:]])
+    least = [np.min(all_of_them[k * _SAMPLES : (k + 1) * _SAMPLES + 1]) for k in range(pieces)]
+    return motion_objective(problem, length, np.array(least))
 
 
 def least_objective(problem: Problem) -> float:

@@ -19,8 +19,8 @@ from ffsr_plan.core.rotations import rotation_vector, to_angles
 from ffsr_plan.core.setting_rules import InstanceOf, Number, Rule, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.dynamics.actuation_mode import Mode
-from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.base_window import Window, default_window
+from ffsr_plan.problem.end_effector_goal import inverse_kinematics
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
@@ -238,7 +238,9 @@ class Problem:
         """(2, 3) least and greatest coordinates of the base origin without a lattice [m]."""
         if self.window is not None:
             return self.window
-        return frozen(default_window(self.robot, self.start, self.start[:3] + self.base_displacement))
+        return frozen(
+            default_window(self.robot, self.start, self.start[:3] + self.base_displacement)
+        )
 
     def _check_travel(self) -> None:
         """Raise `InvalidInput` for joints that travel so far that the reaction takes too long."""
@@ -282,7 +284,9 @@ class Problem:
         if self.window is None:
             return
         if self.lattice is not None:
-            raise InvalidInput("window", self.window.tolist(), "None on a lattice, whose axes count")
+            raise InvalidInput(
+                "window", self.window.tolist(), "None on a lattice, whose axes count"
+            )
         if self.mode.floats:
             raise InvalidInput("window", self.window.tolist(), f"None in the mode {self.mode}")
         for name, place in (("start", self.start[:3]), ("goal", self.goal[:3])):

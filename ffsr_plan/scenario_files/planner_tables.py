@@ -55,7 +55,7 @@ PLANNER_TABLES: dict[str, type[PlannerTable]] = {
 """Tables by the planner's name."""
 _DEFAULTS = [
     default_planner(lattice).name
-    for lattice in (Lattice(), Lattice(postures=[PostureTarget("any", 1)]))
+    for lattice in (Lattice(), Lattice(postures=[PostureTarget("any", 1)]), None)
 ]
 """Planners whose settings may be given without a name, on the lattices whose default they are."""
 
@@ -63,7 +63,7 @@ _DEFAULTS = [
 class ByPlannerName:
     """The annotation of a field for one of `PLANNER_TABLES`, told apart by the key `name`."""
 
-    def table(self, value: object, lattice: Lattice) -> object:
+    def table(self, value: object, lattice: Lattice | None) -> object:
         """The table of a mapping; without a name, settings are those of the lattice's default.
 
         Raises:

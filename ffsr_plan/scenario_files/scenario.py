@@ -128,7 +128,11 @@ def _scenario(file: ScenarioFile, folder: Path) -> Scenario:
         goal=goal,
         mode=mode,
         lattice=file.lattice,
-        reach_attitude=demanded and mode.attitude_reacts and bool(file.lattice.postures),
+        window=None if file.window is None else [file.window.low, file.window.high],
+        reach_attitude=demanded
+        and mode.attitude_reacts
+        and file.lattice is not None
+        and bool(file.lattice.postures),
         **{each.name: getattr(file.objective, each.name) for each in fields(file.objective)},
     )
     planner = file.planner
@@ -145,7 +149,7 @@ def _check_goal(file: ScenarioFile) -> None:
                 goal.attitude,
                 f"none beside end_effector in the mode {mode}, where it follows from the arms",
             )
-        if not file.lattice.postures:
+        if file.lattice is None or not file.lattice.postures:
             raise InvalidInput(
                 "goal.attitude",
                 goal.attitude,

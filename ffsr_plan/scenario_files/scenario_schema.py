@@ -195,6 +195,19 @@ class GoalTable:
             raise InvalidInput(f"end_effector.{error.what}", error.value, error.allowed) from None
 
 
+@settings
+class WindowTable:
+    """The table `[window]`.
+
+    Attributes:
+        low: (3,) least coordinates of the base origin in the world [m].
+        high: (3,) greatest ones; along an axis on which both are equal the base stays [m].
+    """
+
+    low: Position
+    high: Position
+
+
 if TYPE_CHECKING:
     ObjectiveTable = Any
 else:
@@ -221,14 +234,17 @@ class ScenarioFile:
         scatters: a few random spheres in the xy-plane.
         trusses: booms of struts.
         gates: pairs of spheres.
-        lattice: layers and axes.
+        lattice: layers and axes; without it, the base may be anywhere in the window, and joints
+            within their limits.
+        window: where the base may be without a lattice.
         objective: weights of length and clearance.
         planner: the planner, its settings and seed.
     """
 
     robot: RobotTable
     goal: GoalTable
-    lattice: Lattice
+    lattice: Lattice | None = None
+    window: WindowTable | None = None
     title: Annotated[str, Text()] = ""
     start: StartTable = field(default_factory=StartTable)
     obstacles: tuple[Obstacle, ...] = ()

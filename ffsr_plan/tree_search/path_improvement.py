@@ -66,9 +66,7 @@ class ImprovedPath:
         end = self._until(checks)
         while self._until(0) < end and not (callable(expired) and expired()):
             stop = min(self._until(_CHUNK), end)
-            self.last = improve(
-                self._space.arrays, self._memory, self.last, random, _SPREAD, stop
-            )
+            self.last = improve(self._space.arrays, self._memory, self.last, random, _SPREAD, stop)
         self._weigh()
 
     def search_around(self, random: RandomState, checks: int) -> bool:

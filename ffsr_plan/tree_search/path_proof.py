@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -78,7 +79,7 @@ def cut(space: SearchSpace, corners: Array) -> Array:
     """(m + 1, D) the corners (k, D) with further states on edges that are long."""
     weights = space.arrays.weights[0]
     parts = [corners[:1]]
-    for begin, end in zip(corners[:-1], corners[1:], strict=True):
+    for begin, end in pairwise(corners):
         length = float(np.linalg.norm((end - begin) * weights))
         count = max(1, int(np.ceil(length / _LONGEST)))
         shares = np.arange(1, count)[:, None] / count

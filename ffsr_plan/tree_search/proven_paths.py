@@ -152,7 +152,7 @@ class ProvenPaths:
         self._space.arrays = arrays._replace(bars=bars)
 
     def _branches(self, trees: Trees) -> Branches:
-        """Edges of the trees; of very many, as many as are kept at equal distances in their order."""
+        """Edges of the trees; of very many, some at equal distances in their order."""
         if self._space.problem.mode.floats:
             return Branches.none()  # the base of a node lies where the whole way to it leads
         parts = []

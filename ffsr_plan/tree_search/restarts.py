@@ -1,4 +1,4 @@
-"""Searches by trees, one after another, each with other random numbers and another length of edges."""
+"""Searches by trees, one after another, with other random numbers and lengths of edges."""
 
 from __future__ import annotations
 

@@ -81,8 +81,7 @@ class SearchRounds:
         size, number = _FIRST_ROUND, 0
         while self._checks() < checks and not self._monitor.expired():
             end = min(self._checks() + size, checks)
-            searching = self._checks() + int(_SEARCHING * (end - self._checks()))
-            new = self._search(searching, first)
+            new = self._search(end, first)
             if first and self.proven.best is not None:
                 return False
             if self._paths:
@@ -119,20 +118,30 @@ class SearchRounds:
                 return self._prove(path) and space.problem.delta == 0.0
         return False
 
-    def _search(self, until: int, first: bool) -> float:
-        """New paths, until so many configurations have been checked; the least cost of one."""
-        least = np.inf
-        while self._checks() < until or not self._paths:
-            if self._monitor.expired() or (not self._paths and self._checks() >= until):
-                break
-            found = self._restarts.find(until - self._checks(), self._monitor.expired)
+    def _search(self, end: int, first: bool) -> float:
+        """New paths, for the part of a round that is meant for it; without one, for all of it.
+
+        Args:
+            end: number of configurations checked at which the round ends.
+            first: whether to end with the first path that is proven free.
+
+        Returns:
+            The least cost of a new path [m].
+        """
+        least, part = np.inf, self._checks() + int(_SEARCHING * (end - self._checks()))
+        while self._checks() < (part if self._paths else end) and not self._monitor.expired():
+            limit = part if self._paths else end
+            found = self._restarts.find(limit - self._checks(), self._monitor.expired)
             if found is None:
                 continue
             path = ImprovedPath(self.space, *found)
             path.move(self._random, _AT_FIRST, self._monitor.expired)
             path.thin(_THINNING)
-            if self.proven.best is None and self._prove(path) and first:
-                break
+            if self.proven.best is None:
+                if not self._prove(path):
+                    continue
+                if first:
+                    break
             path.move(self._random, _FOR_NEW, self._monitor.expired)
             path.thin(_THINNING)
             least = min(least, path.cost)
@@ -158,9 +167,9 @@ class SearchRounds:
             self._work_on(path, self._checks() + share)
         self._paths.sort(key=lambda each: each.cost)
         self._work_on(self._paths[0], until)
-        if self.proven.is_worth_proving(self._paths[0].cost):
-            self._prove(self._paths[0])
-            self._paths = [path for path in self._paths if path.last > 0]
+        best = self._paths[0]
+        if self.proven.is_worth_proving(best.cost) and not self._prove(best):
+            self._paths.remove(best)
 
     def _work_on(self, path: ImprovedPath, until: int) -> None:
         """Improve one path until so many configurations have been checked."""
@@ -177,7 +186,6 @@ class SearchRounds:
                 return True
             if not path.repair(self._random, _AROUND):
                 break
-        path.last = 0  # it is no path any more
         return False
 
     def _report(self, number: int, checks: int, new: float) -> None:

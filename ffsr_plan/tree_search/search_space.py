@@ -1,4 +1,4 @@
-"""The configuration space of a problem: its coordinates and bounds, and the arrays of the search."""
+"""The configuration space of a problem: coordinates, bounds, and the arrays of the search."""
 
 from __future__ import annotations
 
@@ -84,7 +84,10 @@ class SearchSpace:
         change = problem.joint_displacement
         free = np.isinf(robot.upper)
         other = np.where(change > 0.0, change - 2.0 * np.pi, change + 2.0 * np.pi)
-        ways = [(own, there) if wide else (own,) for own, there, wide in zip(change, other, free, strict=True)]
+        ways = [
+            (own, there) if wide else (own,)
+            for own, there, wide in zip(change, other, free, strict=True)
+        ]
         goals = []
         for steps in product(*ways):
             each = goal.copy()

@@ -20,8 +20,7 @@ _DEFAULT_CHECKS = 1_200_000  # about five seconds
 
 @settings
 class TreePlanner:
-    """Trees of motions through the whole space of base position and joints; the default planner
-    where a problem has no lattice.
+    """Trees through the whole space of base position and joints; the default without a lattice.
 
     Twin trees from start and goal carry the attitude that the reaction brings about. Searches start
     again and again with other lengths of edges; paths are improved by random moves and by shortest

@@ -43,7 +43,7 @@ def wheel_momentum_error(plan: PlanData, bodies: Bodies) -> float:
         plan: a plan whose attitude is held by wheels.
         bodies: the robot, from its URDF.
     """
-    divisions, duration = plan.problem.lattice.divisions, 10.0
+    divisions, duration = plan.edges, 10.0
     law = Polynomial([0, 0, 0, 10, -15, 6])
     grid = np.linspace(0.0, 1.0, 100 * divisions + 1)
     elapsed = np.interp(_stations(plan) / divisions, law(grid), grid)
@@ -57,7 +57,7 @@ def wheel_momentum_error(plan: PlanData, bodies: Bodies) -> float:
 
 def _stations(plan: PlanData) -> Array:
     """Path positions in edges at which the momentum is computed; differences stay on an edge."""
-    stations: Array = np.arange(plan.problem.lattice.divisions)[:, None] + np.array(_STATIONS)
+    stations: Array = np.arange(plan.edges)[:, None] + np.array(_STATIONS)
     return stations.ravel()
 
 
@@ -73,7 +73,7 @@ def _momentum(plan: PlanData, bodies: Bodies, stations: Array) -> tuple[Array, A
     World axes, at `stations` (n,) counted in edges [kg m^2 rad per edge]. Places are counted from
     the base origin: the motion of that point does not change momenta about the centre of mass.
     """
-    divisions = plan.problem.lattice.divisions
+    divisions = plan.edges
     spacing = _SPACING * min(1.0, divisions / _MANY_EDGES)
     fastest = float(np.max(np.abs(np.diff(plan.motion.joint_values, axis=0)), initial=0.0))
     spacing = min(spacing, _LARGEST_STEP / max(fastest, _LARGEST_STEP))

@@ -62,7 +62,7 @@ class Sampler:
             bodies: the robot, from its URDF.
         """
         self._plan, self._bodies = plan, bodies
-        self.edges = plan.problem.lattice.divisions
+        self.edges = plan.edges
         self._origin = plan.problem.start[:3]
         self._corners = plan.at(np.arange(self.edges + 1) / self.edges)
         self.positions: Array = self._corners[:, :3] - self._origin

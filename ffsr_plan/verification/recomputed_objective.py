@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.verification.free_length import free_lengths, station_clearances
 from ffsr_plan.verification.urdf_reading import Bodies
 
 if TYPE_CHECKING:
@@ -50,9 +51,14 @@ def recompute(plan: PlanData, bodies: Bodies, nodes: Array) -> Recomputed:
     problem = plan.problem
     with np.errstate(invalid="ignore"):
         difference = np.where(nodes == plan.clearances, 0.0, np.abs(nodes - plan.clearances))
-    length = length_of(problem, plan.motion.positions, plan.motion.joint_values)
-    objective = objective_of(problem, length, nodes)
-    sharp, share = tolerances(problem, bodies, nodes, objective)
+    if problem.lattice is None:
+        lengths = free_lengths(plan)
+        length, counted = float(lengths.sum()), station_clearances(plan, bodies, lengths)
+    else:
+        length = length_of(problem, plan.motion.positions, plan.motion.joint_values)
+        counted = nodes
+    objective = objective_of(problem, length, counted)
+    sharp, share = tolerances(problem, bodies, counted, objective)
     return Recomputed(
         length,
         objective,
@@ -107,7 +113,7 @@ def length_of(problem: Problem, positions: Array, joint_values: Array) -> float:
         positions: (m + 1, 3) base origins at the nodes [m].
         joint_values: (m + 1, nd) at the nodes, without jumps at half a turn [rad or m].
     """
-    m, robot = problem.lattice.divisions, problem.robot
+    m, robot = problem.given_lattice.divisions, problem.robot
     steps = np.diff(joint_values, axis=0)
     straight = steps.mean(axis=0)  # postures displace nothing at start and goal
     weights = np.where(robot.prismatic, problem.position_weight, problem.rotation_weight)

@@ -23,6 +23,7 @@ import numpy as np
 from ffsr_plan.core.checks import whole_number
 from ffsr_plan.core.contacts import approach
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.verification.free_path import FreePath
 from ffsr_plan.verification.momentum_residual import momentum_residual, wheel_momentum_error
 from ffsr_plan.verification.recomputed_objective import AGREEMENT, Recomputed, recompute
 from ffsr_plan.verification.recomputed_path import LatticePath
@@ -102,7 +103,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     Raises:
         InvalidInput: `samples` is not a positive integer, or too large.
     """
-    most = max(1, _MOST_EVEN_SAMPLES // plan.problem.lattice.divisions)
+    most = max(1, _MOST_EVEN_SAMPLES // plan.edges)
     samples = whole_number("samples", samples, at_least=1, at_most=most)
     if on_progress is not None and not callable(on_progress):
         raise InvalidInput("on_progress", on_progress, "a function, or None")
@@ -114,7 +115,8 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     wheel_error = wheel_momentum_error(plan, bodies) if held else None
     drift = swept.drift if problem.mode.floats else None
     with np.errstate(over="ignore", invalid="ignore"):  # absurd weights give infinite lengths
-        costs, path = recompute(plan, bodies, swept.nodes), LatticePath(plan)
+        costs = recompute(plan, bodies, swept.nodes)
+        path = FreePath(plan) if problem.lattice is None else LatticePath(plan)
         contradictions = path.problems(bodies, swept.nodes) if swept.finite else []
     problems = (
         *_bad_input(plan, bodies),
@@ -149,7 +151,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     )
 
 
-def _not_checked(plan: PlanData, path: LatticePath, bodies: Bodies) -> Iterator[str]:
+def _not_checked(plan: PlanData, path: LatticePath | FreePath, bodies: Bodies) -> Iterator[str]:
     """What the verification takes as the plan has it."""
     robot = plan.problem.robot
     if plan.optimum_is_exact:
@@ -266,7 +268,7 @@ def _ends_and_limits(plan: PlanData) -> list[str]:
         chord = min(np.linalg.norm(last[3:7] - sign * problem.goal[3:7]) for sign in (1.0, -1.0))
         if (missed := 4.0 * np.arcsin(0.5 * chord)) > GOAL_LIMIT:
             problems.append(f"the goal's attitude is missed by {missed:.3g} rad")
-    corners = plan.at(np.arange(len(plan.configurations)) / problem.lattice.divisions)
+    corners = plan.at(np.arange(len(plan.configurations)) / plan.edges)
     if np.abs(corners - plan.configurations).max() > AGREEMENT:
         problems.append("the motion does not pass through the plan's configurations")
     if np.any((values < robot.lower - AGREEMENT) | (values > robot.upper + AGREEMENT)):

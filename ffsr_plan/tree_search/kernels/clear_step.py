@@ -10,7 +10,7 @@ import math
 from ffsr_plan.collision.nearest_sphere_kernels import nearest_sphere
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.tree_search.kernels.search_arrays import Records, SearchArrays
+from ffsr_plan.tree_search.kernels.search_arrays import Record, SearchArrays
 from ffsr_plan.tree_search.kernels.shape_gap import core_gap
 
 _BEYOND = 1e-12  # [m] beyond the farthest distance that matters
@@ -67,7 +67,7 @@ def put_in_world(space: SearchArrays, g: int, position: Array, turn: Array) -> N
 
 
 @kernel
-def world_speed(shape: Records, link: Records, base: Array, rate: Array) -> float:
+def world_speed(shape: Record, link: Record, base: Array, rate: Array) -> float:
     """Bound on the speed of a shape's core in the world.
 
     Args:
@@ -118,7 +118,7 @@ def obstacle_step(
 
 @kernel
 def link_step(space: SearchArrays, margin: float, step: float) -> float:
-    """At most `step`, so that no two links come nearer to each other than `margin`; -1 if some are.
+    """At most `step`, so that no two links come nearer than `margin`; -1 if some are.
 
     Args:
         space: its shapes have been placed.
@@ -131,7 +131,8 @@ def link_step(space: SearchArrays, margin: float, step: float) -> float:
         speed = one.speed + two.speed
         far = margin + speed * step
         x, y, z = (
-            one.frame[9] - two.frame[9], one.frame[10] - two.frame[10], one.frame[11] - two.frame[11]
+            one.frame[9] - two.frame[9], one.frame[10] - two.frame[10], one.frame[11] -
+            two.frame[11]
         )  # fmt: skip
         skins = one.skin + two.skin
         wide = far + skins + one.reach + two.reach

@@ -105,7 +105,13 @@ def observe(space: SearchArrays, begin: Array, end: Array, time: float) -> None:
 
 @kernel
 def advance(
-    space: SearchArrays, begin: Array, end: Array, time: float, step: float, quat: Array, rate: Array
+    space: SearchArrays,
+    begin: Array,
+    end: Array,
+    time: float,
+    step: float,
+    quat: Array,
+    rate: Array,
 ) -> None:
     """Move on by a step, and turn the attitude `quat` (4,) by what the base does meanwhile.
 

@@ -1,8 +1,8 @@
 """Compiled shortest path through random states around a path, of which edges are flown when needed.
 
-Layers lie across the path at equal steps of its length; lane 0 holds the path itself, the others are
-displaced smoothly along it, by more or less, with some scatter. The shortest path through all layers
-is flown from the start at the true attitudes; an edge that is not clear is barred, until the
+Layers lie across the path at equal steps of its length; lane 0 holds the path itself, the others
+are displaced smoothly along it, by more or less, with some scatter. The shortest path through all
+layers is flown from the start at the true attitudes; an edge that is not clear is barred, until the
 shortest path is clear or no better than the one that is known.
 """
 
@@ -36,7 +36,12 @@ _ATTEMPTS = 400  # paths that are flown
 
 @kernel
 def search_around(
-    space: SearchArrays, memory: PathMemory, last: int, random: RandomState, cost: float, checks: int
+    space: SearchArrays,
+    memory: PathMemory,
+    last: int,
+    random: RandomState,
+    cost: float,
+    checks: int,
 ) -> int:
     """Replace the path by a better one through states around it, if one is found.
 

@@ -2,8 +2,9 @@
 
     cost = L + w sum over the stations of 1 / d + W max(0, missed angle - slack)
 
-The stations are `STATIONS` points at equal steps of arc length between the ends: as many as the inner
-nodes of a lattice of 40 divisions, so that the sum is that of Eq. 8. More corners do not change it.
+The stations are `STATIONS` points at equal steps of arc length between the ends: as many as the
+inner nodes of a lattice of 40 divisions, so that the sum is that of Eq. 8. More corners do not
+change it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Compiled improvement of a path by random moves; whatever comes behind a move is flown again.
 
-Shortcuts join two points of the path, in all coordinates or in some of them; corners are moved, left
-out, and put into long edges. A move is kept if the path is still clear and costs less.
+Shortcuts join two points of the path, in all coordinates or in some of them; corners are moved,
+left out, and put into long edges. A move is kept if the path is still clear and costs less.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The arrays that all kernels of the tree search share.
 
-A state is a row of D = 4 + nd coordinates: base position in the world [m], the angle by which wheels
-have turned the base [rad], joint values [rad or m]. Coordinates that the mode does not actuate stay
-zero. The attitude of the base that belongs to a state is kept beside it.
+A state is a row of D = 4 + nd coordinates: base position in the world [m], the angle by which
+wheels have turned the base [rad], joint values [rad or m]. Coordinates that the mode does not
+actuate stay zero. The attitude of the base that belongs to a state is kept beside it.
 
 Robot, scene and settings are few arrays of records: numba compiles each array of an argument anew
 at every call.
@@ -19,6 +19,7 @@ from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.scene.sphere_tree import SphereTree
 
 Records = NDArray[Any]
+Record = Any
 TURN, JOINTS = 3, 4
 """Column of the angle that wheels have turned the base by, and first column of the joints."""
 
@@ -45,8 +46,8 @@ LINK = np.dtype(
     ],
     align=True,
 )
-"""A link: what `kinematics` says of it and its body, then joint value, rate, pose and velocity at the
-configuration at hand, in base axes."""
+"""A link: what `kinematics` says of it and its body, then joint value, rate, pose and velocity at
+the configuration at hand, in base axes."""
 
 SHAPE = np.dtype(
     [
@@ -89,11 +90,12 @@ SETUP = np.dtype(
     ],
     align=True,
 )
-"""What actuates the base; axis of the wheels' turn, in base axes; centre of mass at the start, world
-[m]; clearances that are kept [m]; least travel between two checks [m]; cost of 1 / d at a station
-[m^2] and the largest clearance d that counts [m]; the attitude to arrive at and the cost of missing
-it [m/rad]; largest joint step of the integration [rad or m]. Then angular velocity of the base, centre of mass and its velocity at the
-configuration at hand, relative to the base, and the number of configurations checked so far."""
+"""What actuates the base; axis of the wheels' turn, in base axes; centre of mass at the start,
+world [m]; clearances that are kept [m]; least travel between two checks [m]; cost of 1 / d at a
+station [m^2] and the largest clearance d that counts [m]; the attitude to arrive at and the cost of
+missing it [m/rad]; largest joint step of the integration [rad or m]. Then angular velocity of the
+base, centre of mass and its velocity at the configuration at hand, relative to the base, and the
+number of configurations checked so far."""
 
 
 class SearchArrays(NamedTuple):

@@ -1,8 +1,8 @@
 """Compiled twin trees whose nodes carry the attitude that the way to them brings about.
 
 Tree 0 grows from the start; its attitudes are true. Tree 1 grows backwards from the goals; each of
-its roots assumes an attitude on arrival, given which its attitudes are true. Where the two meet, the
-branch of tree 1 is flown from the node of tree 0 at the true attitude: that decides.
+its roots assumes an attitude on arrival, given which its attitudes are true. Where the two meet,
+the branch of tree 1 is flown from the node of tree 0 at the true attitude: that decides.
 """
 
 from __future__ import annotations
@@ -199,7 +199,7 @@ def extend(
     space: SearchArrays, trees: Trees, side: int, node: int, sample: Array, reach: float,
     target: Array, arrival: Array,
 ) -> int:  # fmt: skip
-    """Fly from a node towards a sample by at most `reach`; the new node, or -1 if it is too near."""
+    """Fly from a node towards a sample by at most `reach`; the new node, -1 if too near."""
     begin = trees.states[side, node]
     far = distance(space.weights, 0, begin, sample)
     if far < _SAME:
