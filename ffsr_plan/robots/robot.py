@@ -300,7 +300,7 @@ class SpaceRobot:
 
     def joint_values(self, q: Array) -> Array:
         """Joint values (..., nd) of configurations (..., nq); continuous joints in (-pi, pi]."""
-        values = np.empty((*q.shape[:-1], self.nd))
+        values = np.empty((*q.shape[:-1], len(self._slots)))
         for k, (i, nq) in enumerate(self._slots):
             values[..., k] = q[..., i] if nq == 1 else np.arctan2(q[..., i + 1], q[..., i])
         return values

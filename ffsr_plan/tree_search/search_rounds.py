@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
@@ -17,9 +15,7 @@ from ffsr_plan.tree_search.path_improvement import ImprovedPath
 from ffsr_plan.tree_search.proven_paths import ProvenPaths
 from ffsr_plan.tree_search.restarts import Restarts
 from ffsr_plan.tree_search.search_space import SearchSpace
-
-if TYPE_CHECKING:
-    from ffsr_plan.tree_search.tree_planner import TreePlanner
+from ffsr_plan.tree_search.tree_settings import TreeSettings
 
 _FIRST_ROUND = 60_000  # configurations checked
 _SEARCHING = 0.5  # share of a round that is spent on new paths
@@ -41,7 +37,7 @@ class SearchRounds:
     def __init__(
         self,
         problem: Problem,
-        planner: TreePlanner,
+        settings: TreeSettings,
         rng: np.random.Generator,
         monitor: SearchMonitor,
     ) -> None:
@@ -49,7 +45,7 @@ class SearchRounds:
 
         Args:
             problem: a problem without a lattice.
-            planner: settings.
+            settings: of the search.
             rng: source of randomness.
             monitor: callback and stopping condition.
 
@@ -57,11 +53,11 @@ class SearchRounds:
             StartInCollision, GoalInCollision: see `TreePlanner.solve`.
         """
         check_ends(problem)
-        self.space = SearchSpace(problem, planner.margin)
-        self._monitor, self._ways = monitor, planner.ways
+        self.space = SearchSpace(problem, settings.margin)
+        self._monitor, self._ways = monitor, settings.ways
         searching, self._random = rng.spawn(1)[0], random_state(rng)
         self._restarts = Restarts(
-            self.space, searching, planner.reaches, planner.first_checks, planner.roots
+            self.space, searching, settings.reaches, settings.first_checks, settings.roots
         )
         self._paths: list[ImprovedPath] = []
         self.proven = ProvenPaths(self.space)

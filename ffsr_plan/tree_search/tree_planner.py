@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import time
-from typing import Annotated, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.setting_rules import Number, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import SearchRequest, Solution
+from ffsr_plan.tree_search.tree_settings import MOST_CHECKS, TreeSettings
 
-_Reach = Annotated[float, Number(at_least=-1e3, at_most=1e3)]
-_MOST_CHECKS = 10**12
 _DEFAULT_CHECKS = 1_200_000  # about five seconds
 
 
 @settings
-class TreePlanner:
+class TreePlanner(TreeSettings):
     """Trees through the whole space of base position and joints; the default without a lattice.
 
     Twin trees from start and goal carry the attitude that the reaction brings about. Searches start
@@ -30,32 +28,12 @@ class TreePlanner:
     Work is counted in configurations checked against obstacles and links, so that a seed gives the
     same plan on any machine; a million of them take some five seconds.
 
-    Attributes:
-        checks: configurations checked at most; without it 1 200 000, and as many as there is time
-            for where `plan` has a time limit.
-        reaches: longest edge towards a sample in each search of a round, in metres, where a radian
-            counts as 0.6 m; negative where the tree from the start grows alone.
-        first_checks: configurations checked at most by each search of the first round; each further
-            round has twice as many.
-        roots: attitudes on arrival that the tree from the goal assumes at most.
-        ways: ways round that are improved side by side.
-        margin: clearance that the search keeps, from obstacles and between links [m]; at most half
-            of that at the start. Proofs need none of it.
+    The settings are those of `TreeSettings`.
     """
 
+    __doc__ += "\n" + (TreeSettings.__doc__ or "").partition("\n\n")[2]
     name: ClassVar[str] = "tree-planner"
     exact: ClassVar[bool] = False
-
-    checks: Annotated[int, WholeNumber(at_least=1, at_most=_MOST_CHECKS)] | None = None
-    reaches: tuple[_Reach, ...] = (2.5, -1.0, 1.6, -2.5)
-    first_checks: Annotated[int, WholeNumber(at_least=1, at_most=_MOST_CHECKS)] = 40_000
-    roots: Annotated[int, WholeNumber(at_least=1, at_most=1000)] = 12
-    ways: Annotated[int, WholeNumber(at_least=1, at_most=100)] = 3
-    margin: Annotated[float, Number(at_least=1e-6, at_most=1e3)] = 1e-3
-
-    def __post_init__(self) -> None:
-        if not self.reaches or 0.0 in self.reaches:
-            raise InvalidInput("reaches", self.reaches, "at least one length that is not zero")
 
     def refuse(self, problem: Problem) -> None:
         """Raise `InvalidInput` if the problem has a lattice, naming planners for it."""
@@ -89,6 +67,6 @@ class TreePlanner:
         begin = time.perf_counter()
         rounds = SearchRounds(problem, self, rng, request.monitor())
         limited = np.isfinite(request.time_limit)
-        checks = self.checks or (_MOST_CHECKS if limited else _DEFAULT_CHECKS)
+        checks = self.checks or (MOST_CHECKS if limited else _DEFAULT_CHECKS)
         interrupted = rounds.run(checks, request.first)
         return rounds.solution(interrupted, time.perf_counter() - begin)

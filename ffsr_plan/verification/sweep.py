@@ -151,8 +151,7 @@ class _Sweep:
         shapes, pairs = self.distances.shapes, self.distances.pairs
         self._speeds = np.hstack([speeds[:, :shapes] + base[:, None], rates.of_pairs(pairs)])
         self._reach = np.append(reach[:shapes], np.zeros(len(pairs)))
-        ends = (plan.problem.start[3:7], plan.problem.goal[3:7])
-        self._held_turn = None if mode.attitude_reacts else _angle(*ends) / edges
+        self._held_turns = None if mode.attitude_reacts else _held_turns(plan)
         self._claim = plan.certificate.least_clearance
         self._start = self.sampler.at(np.zeros(1, dtype=np.int64), np.zeros(1)).centers_of_mass[0]
         self._halvings = 0
@@ -201,8 +200,8 @@ class _Sweep:
     ) -> _Intervals:
         """Intervals, with a bound on the angular velocity of the base that both ends allow."""
         apart = end - begin
-        if self._held_turn is not None:
-            turn = np.full(len(edge), self._held_turn)
+        if self._held_turns is not None:
+            turn = self._held_turns[edge]
         else:
             ends = [self._samples.momentum.at(sample) for sample in (first, last)]
             turn = np.maximum(*(self._rates.turn(each, edge, 0.5 * apart) for each in ends))
@@ -299,7 +298,16 @@ class _Sweep:
         )  # fmt: skip
 
 
-def _angle(a: Array, b: Array) -> float:
-    """Angle between two attitudes (4,) [rad]."""
-    ends = float(np.linalg.norm(a - b)), float(np.linalg.norm(a + b))
-    return 4.0 * float(np.arctan2(min(ends), max(ends)))
+def _held_turns(plan: PlanData) -> Array:
+    """(m,) angle [rad] that wheels turn the base by on each edge; the same on all of a lattice."""
+    if plan.problem.lattice is not None:
+        whole = _angles(plan.problem.start[3:7], plan.problem.goal[3:7])
+        return np.full(plan.edges, whole / plan.edges)
+    attitudes = plan.configurations[:, 3:7]
+    return _angles(attitudes[:-1], attitudes[1:])
+
+
+def _angles(a: Array, b: Array) -> Array:
+    """Angles between attitudes (..., 4) [rad]."""
+    ends = np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)
+    return np.asarray(4.0 * np.arctan2(np.minimum(*ends), np.maximum(*ends)))

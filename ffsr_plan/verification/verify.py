@@ -23,10 +23,9 @@ import numpy as np
 from ffsr_plan.core.checks import whole_number
 from ffsr_plan.core.contacts import approach
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.verification.free_path import FreePath
 from ffsr_plan.verification.momentum_residual import momentum_residual, wheel_momentum_error
 from ffsr_plan.verification.recomputed_objective import AGREEMENT, Recomputed, recompute
-from ffsr_plan.verification.recomputed_path import LatticePath
+from ffsr_plan.verification.recomputed_path import FreePath, LatticePath, path_of
 from ffsr_plan.verification.sweep import CONFIRMED, OnProgress, Swept, sweep
 from ffsr_plan.verification.urdf_reading import Bodies
 
@@ -115,8 +114,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
     wheel_error = wheel_momentum_error(plan, bodies) if held else None
     drift = swept.drift if problem.mode.floats else None
     with np.errstate(over="ignore", invalid="ignore"):  # absurd weights give infinite lengths
-        costs = recompute(plan, bodies, swept.nodes)
-        path = FreePath(plan) if problem.lattice is None else LatticePath(plan)
+        costs, path = recompute(plan, bodies, swept.nodes), path_of(plan)
         contradictions = path.problems(bodies, swept.nodes) if swept.finite else []
     problems = (
         *_bad_input(plan, bodies),

@@ -163,7 +163,13 @@ def test_a_goal_pose_that_the_mode_does_not_lead_to_is_told(robot):
     quiet = [
         fp.Problem(robot, fp.Scene(), start, turned, "attitude-held", lattice),
         fp.Problem(robot, fp.Scene(), start, plan.motion.configurations()[-1], lattice=lattice),
-        fp.Problem(robot, fp.Scene(), start, robot.configuration((1, 0, 0), joints=joints)),
+        fp.Problem(
+            robot,
+            fp.Scene(),
+            start,
+            robot.configuration((1, 0, 0), joints=joints),
+            lattice=lattice,
+        ),
         afloat.reaching("left_3", (0.5, 0.9, 0.0)),
     ]
     with warnings.catch_warnings():

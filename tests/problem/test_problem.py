@@ -38,10 +38,15 @@ def test_start_and_goal_are_read_only_copies(robot):
         assert not array.flags.writeable
 
 
-def test_without_a_lattice_it_is_the_default_one(robot):
+def test_without_a_lattice_there_is_none(robot):
     goal = robot.configuration((1, 0, 0))
     for given in ({}, {"lattice": None}):
-        assert fp.Problem(robot, fp.Scene(), robot.neutral(), goal, **given).lattice == fp.Lattice()
+        made = fp.Problem(robot, fp.Scene(), robot.neutral(), goal, **given)
+        assert made.lattice is None
+        assert "lattice=none" in repr(made)
+        with pytest.raises(fp.InvalidInput, match="a problem with a lattice"):
+            made.delta_d
+        assert made.straight_length == pytest.approx(1.0)
 
 
 def test_problems_are_equal_by_content(problem):

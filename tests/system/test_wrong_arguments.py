@@ -60,6 +60,7 @@ def calls(plan, tmp_path_factory):
         fp.AntSystem: vars(fp.AntSystem()),
         fp.MaxMinAntSystem: vars(fp.MaxMinAntSystem()),
         fp.PostureAnnealing: vars(fp.PostureAnnealing()),
+        fp.TreePlanner: vars(fp.TreePlanner()),
         fp.Problem: vars(problem),
         fp.Bus: {"size": [1, 1, 1], "mass": 3.0, "inertia": None, "center_of_mass": [0, 0, 0],
                  "panels": ()},
@@ -182,12 +183,12 @@ def test_wrong_arguments_are_refused_by_errors_of_the_package(calls, tmp_path, m
 def test_the_interface_is_covered(calls):
     """Every public function, and every public class that users make, is among the calls."""
     made_by_the_package = {
-        "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof", "History",
-        "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement", "Report",
+        "Branches", "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof",
+        "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement", "Report",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
         "SearchResult", "Solution", "SpaceRobot",
-        "States", "TimedPlan", "Trails", "Verdict", "WheelMomentum",
+        "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum",
     }  # fmt: skip
     without_arguments = {"arm_names", "robot_names", "robot_summaries", "warm_up"}  # or callbacks
     errors = {name for name in fp.__all__ if isinstance(getattr(fp, name), type)

@@ -48,6 +48,12 @@ def norm(vector: Array) -> float:
 
 
 @kernel
+def safe_way(room: float, least: float) -> float:
+    """The way to the next check [m], ending before the room does, where a check would fail."""
+    return max(room - 0.5 * least, least)
+
+
+@kernel
 def put_in_world(space: SearchArrays, g: int, position: Array, turn: Array) -> None:
     """Placement of shape `g` in the world, into `space.frame`.
 
@@ -112,7 +118,7 @@ def obstacle_step(
         if near <= margin:
             return -1.0
         if speed > 0.0:
-            step = min(step, max(near - margin, setup.least_step) / speed)
+            step = min(step, safe_way(near - margin, setup.least_step) / speed)
     return step
 
 
@@ -142,5 +148,5 @@ def link_step(space: SearchArrays, margin: float, step: float) -> float:
         if near <= margin:
             return -1.0
         if near < far and speed > 0.0:
-            step = min(step, max(near - margin, least) / speed)
+            step = min(step, safe_way(near - margin, least) / speed)
     return step

@@ -1,0 +1,42 @@
+"""Settings of the search by trees."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.setting_rules import Number, WholeNumber
+from ffsr_plan.core.settings import settings
+
+_Reach = Annotated[float, Number(at_least=-1e3, at_most=1e3)]
+MOST_CHECKS = 10**12
+"""Configurations that a search may check."""
+
+
+@settings
+class TreeSettings:
+    """Settings of trees, improvement and proof.
+
+    Attributes:
+        checks: configurations checked at most; without it 1 200 000, and as many as there is time
+            for where `plan` has a time limit.
+        reaches: longest edge towards a sample in each search of a round, in metres, where a radian
+            counts as 0.6 m; negative where the tree from the start grows alone.
+        first_checks: configurations checked at most by each search of the first round; each further
+            round has twice as many.
+        roots: attitudes on arrival that the tree from the goal assumes at most.
+        ways: ways round that are improved side by side.
+        margin: clearance that the search keeps, from obstacles and between links [m]; at most half
+            of that at the start. Proofs need none of it.
+    """
+
+    checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] | None = None
+    reaches: tuple[_Reach, ...] = (2.5, -1.0, 1.6, -2.5)
+    first_checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] = 40_000
+    roots: Annotated[int, WholeNumber(at_least=1, at_most=1000)] = 12
+    ways: Annotated[int, WholeNumber(at_least=1, at_most=100)] = 3
+    margin: Annotated[float, Number(at_least=1e-6, at_most=1e3)] = 1e-3
+
+    def __post_init__(self) -> None:
+        if not self.reaches or 0.0 in self.reaches:
+            raise InvalidInput("reaches", self.reaches, "at least one length that is not zero")
