@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from typing import Literal
@@ -84,32 +85,27 @@ def plan(
     chosen = _planner_for(problem, planner)
     rng, seed_number = _generator(seed)
     request = _request(chosen, refine, colonies, workers, time_limit, until, on_cycle)
-    interruption = Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE)))
+    check_colonies(problem, request.colonies)
     certified = partial(_certified, problem, chosen, seed_number, watch)
-    made = certified(_solution(problem, chosen, rng, request, interruption, certified))
+    interruption = Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE)))
+    with _best_certified(certified), interruption:
+        solution = chosen.solve(problem, rng, interruption.received_by(request))
+    if interruption.pressed:
+        solution = solution._replace(interrupted=True)
+    made = certified(solution)
     _warn_of_ignored_goal(made)
     return made
 
 
-def _solution(
-    problem: Problem,
-    planner: Planner,
-    rng: np.random.Generator,
-    request: SearchRequest,
-    interruption: Interruption,
-    certified: Callable[[Solution], Plan],
-) -> Solution:
-    """What the planner returns; an error that holds a solution holds the plan that it makes."""
-    if problem.lattice is not None:
-        check_colonies(problem, request.colonies)
+@contextmanager
+def _best_certified(certified: Callable[[Solution], Plan]) -> Iterator[None]:
+    """An error that holds the best solution holds the plan that it makes instead."""
     try:
-        with interruption:
-            solution = planner.solve(problem, rng, interruption.received_by(request))
+        yield
     except AttitudeOutOfReach as error:
         if isinstance(error.best, Solution):
             error.best = certified(error.best)
         raise
-    return solution._replace(interrupted=True) if interruption.pressed else solution
 
 
 def refine(plan: Plan) -> Plan:

@@ -68,7 +68,9 @@ def check_colonies(problem: Problem, colonies: int) -> None:
         problem: gives the lattice.
         colonies: number of independent colonies, whose results are compared at the end.
     """
-    lattice = problem.given_lattice
+    lattice = problem.lattice
+    if lattice is None:
+        return
     axes = [getattr(lattice, name) for name in lattice.axes]
     edges = lattice.divisions * math.prod(2 * axis.half_count + 1 for axis in axes) ** 2
     of_path = (_BYTES_PER_LAYER if lattice.postures else 8) * lattice.divisions

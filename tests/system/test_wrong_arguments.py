@@ -184,7 +184,8 @@ def test_the_interface_is_covered(calls):
     """Every public function, and every public class that users make, is among the calls."""
     made_by_the_package = {
         "Branches", "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof",
-        "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement", "Report",
+        "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement",
+        "Report",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
         "SearchResult", "Solution", "SpaceRobot",
