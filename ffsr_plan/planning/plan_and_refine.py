@@ -64,8 +64,7 @@ def plan(
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
         time_limit: [s] for the search alone, without set-up, optimum and refinement.
-        until: `first` ends the search with the first path that is proven free, where there is no
-            lattice.
+        until: `first` returns the first path that is proven free, where there is no lattice.
         on_cycle: called with a `Cycle` after each cycle, for a single colony; without a lattice,
             with a `TreeCycle` after each round.
         on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
@@ -90,9 +89,7 @@ def plan(
     interruption = Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE)))
     with _best_certified(certified), interruption:
         solution = chosen.solve(problem, rng, interruption.received_by(request))
-    if interruption.pressed:
-        solution = solution._replace(interrupted=True)
-    made = certified(solution)
+    made = certified(solution._replace(interrupted=solution.interrupted or interruption.pressed))
     _warn_of_ignored_goal(made)
     return made
 

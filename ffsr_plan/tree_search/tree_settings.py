@@ -31,7 +31,7 @@ class TreeSettings:
     """
 
     checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] | None = None
-    reaches: tuple[_Reach, ...] = (2.5, -1.0, 1.6, -2.5)
+    reaches: tuple[_Reach, ...] = (1.6, 4.0)
     first_checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] = 40_000
     roots: Annotated[int, WholeNumber(at_least=1, at_most=1000)] = 12
     ways: Annotated[int, WholeNumber(at_least=1, at_most=100)] = 3
