@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.errors import InvalidInput
@@ -18,6 +19,7 @@ from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
 from ffsr_plan.search.optimum_planner import LatticeOptimum
 from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
+from ffsr_plan.tree_search.tree_planner import TreePlanner
 
 _MANY = 20_001  # spheres whose tree a kernel builds
 
@@ -57,6 +59,8 @@ def _cases() -> Iterator[tuple[Problem, Planner]]:
     yield _across("point", few), MaxMinAntSystem(ants=2, cycles=2)
     yield _across("point", many), AntSystem(ants=2, cycles=2)
     yield _across("satellite_ur5", few), LatticeOptimum()
+    with_lattice = _across("planar_dual_arm", few)
+    yield replace(with_lattice, lattice=None), TreePlanner(checks=100_000)
     yield (
         _across("planar_dual_arm", few, folding),
         PostureAnnealing(ants=2, cycles=2, annealing_shifts=20),

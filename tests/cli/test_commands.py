@@ -230,3 +230,20 @@ def test_nothing_infinite_is_printed_for_an_empty_scene(tmp_path):
     assert result.exit_code == 0, result.output
     assert "no obstacles" in result.output
     assert "inf" not in result.output
+
+
+def test_a_scenario_without_a_lattice_is_planned(run, tmp_path):
+    text = QUICK.replace(
+        "[lattice]\ndivisions = 8\nlateral = { half_count = 3, spacing = 0.2 }\n", ""
+    )
+    free = text + "[planner]\nchecks = 60000\n[window]\nlow = [0, -1, 0]\nhigh = [4, 1, 0]\n"
+    (tmp_path / "free.toml").write_text(free)
+    result = run("plan", "free.toml", "--out", "results")
+    assert result.exit_code == 0, result.output
+    assert "tree-planner" in result.stdout
+    assert "without a lattice" in result.stdout
+    assert run("verify", "results/plan.json").exit_code == 0
+    assert run("timed", "results/plan.json", "--thruster-acceleration", 0.1).exit_code == 0
+    (tmp_path / "both.toml").write_text(free.replace("[window]", "[lattice]\n[window]"))
+    refused = run("plan", "both.toml")
+    assert refused.exit_code == 2
