@@ -48,8 +48,8 @@ def test_a_base_outside_its_window_is_found_out(plan):
     exact = replace(plan.problem, window=(low, high))
     optimum = plan.optimum
     assert problems_of(replace(plan, problem=exact, optimum=optimum)) == ""
-    low = np.where(low < high, low + [0.0, 1e-6, 0.0], low)
+    low = low + np.array([0.0, 1e-6, 0.0])
     if low[1] > plan.problem.start[1]:
-        low, high = plan.motion.positions.min(axis=0), high - [0.0, 1e-6, 0.0]
+        low, high = plan.motion.positions.min(axis=0), high - np.array([0.0, 1e-6, 0.0])
     narrow = replace(plan.problem, window=(low, high))
     assert "the base leaves the window" in problems_of(replace(plan, problem=narrow))

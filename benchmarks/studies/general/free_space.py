@@ -4,8 +4,8 @@
 
 The problems of classes 1 to 5 are in `problems.json`, twenty of each: random postures among
 spheres, walls with gaps, cups, a free-floating UR5 beside a box of spheres, and a UR5 satellite
-with panels that flies past spheres. Each plan is verified. Times are processor time of one thread, without
-compiling.
+with panels that flies past spheres. Each plan is verified. Times are processor time of one thread,
+without compiling.
 """
 
 import argparse
