@@ -6,6 +6,8 @@ import numpy as np
 
 from ffsr_plan.collision.contacts import contacts, goal_in_collision, start_in_collision
 from ffsr_plan.collision.shape_placements import shape_placements
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.shape_arrays import BOX
 from ffsr_plan.scene.scene import Scene
@@ -29,9 +31,17 @@ def check_ends(problem: Problem) -> None:
     around = scene if certain else Scene()
     touching = contacts(robot, around, problem.goal)
     if contacts(robot, scene, problem.start):
-        raise start_in_collision(robot, scene, problem.start, problem.goal if touching else None)
+        there = _arrival(problem) if touching else None
+        raise start_in_collision(robot, scene, problem.start, there)
     if touching:
-        raise goal_in_collision(robot, around, problem.goal)
+        raise goal_in_collision(robot, around, _arrival(problem))
+
+
+def _arrival(problem: Problem) -> Array:
+    """(nq,) the goal at the attitude to which the straight way leads."""
+    ends = np.stack([problem.start[:3], problem.start[:3] + problem.base_displacement])
+    motion = Motion(problem.robot, problem.mode, problem.start, problem.goal, ends)
+    return np.asarray(motion.configurations()[-1])
 
 
 def _touches_at_any_attitude(problem: Problem) -> bool:
