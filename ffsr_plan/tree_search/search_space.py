@@ -12,6 +12,9 @@ from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.shape_arrays import BOX
+from ffsr_plan.tree_search.kernels.clear_step import pair_gaps
+from ffsr_plan.tree_search.kernels.flight import fly
+from ffsr_plan.tree_search.kernels.path_cost import clearance_at
 from ffsr_plan.tree_search.kernels.search_arrays import (
     JOINTS,
     LINK,
@@ -75,6 +78,27 @@ class SearchSpace:
             frame=np.zeros(15),
             still=np.zeros(3),
         )
+        self._settle()
+
+    def _settle(self) -> None:
+        """Leave to the proof what the search would refuse at start and goal already.
+
+        Distances of hulls are lower bounds, those of the boxes around them. Pairs of links that are
+        nearer than the margin at an end are not looked at by the search, and where an end is nearer
+        to an obstacle than twice the margin, the margin is smaller.
+        """
+        setup, arrays = self.arrays.setup[0], self.arrays
+        arrival, near = np.zeros(4), np.zeros(len(arrays.pairs), dtype=np.bool_)
+        attitude, margin = np.array(self.problem.start[3:7]), float(setup["margin"])
+        for state in (self.start, *self.goals):
+            fly(arrays, self.start, attitude, state, arrival, False)
+            clearance = float(clearance_at(arrays, state, arrival))
+            near |= pair_gaps(arrays) <= setup["self_margin"]
+            if state is self.start or clearance > 0.0:
+                margin = min(margin, clearance - 0.5 * abs(clearance))
+        setup["margin"] = margin
+        setup["checks"] = 0
+        self.arrays = arrays._replace(pairs=arrays.pairs[~near])
 
     def _goals(self) -> Array:
         problem, robot = self.problem, self.problem.robot

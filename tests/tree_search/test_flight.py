@@ -127,3 +127,20 @@ def test_more_room_is_kept_near_barred_edges(point):
     assert fly(barred, *ways[1:]) < 1.0
     bar[0, 1] = 1.0
     assert fly(barred, *ways[1:]) == 1.0
+
+
+def test_ends_close_to_something_leave_a_smaller_margin(point):
+    scene = fp.Scene([[2.0, 0.0, 0.0], [0.0, 0.5004, 0.0]], [0.5, 0.5])
+    problem = fp.Problem(point, scene, point.configuration(), point.configuration((4.0, 0, 0)))
+    space = SearchSpace(problem, 1e-3)
+    assert space.arrays.setup["margin"][0] == pytest.approx(2e-4)
+    assert fp.plan(problem, fp.TreePlanner(checks=60_000)).verify().ok
+
+
+def test_links_near_each_other_at_an_end_are_left_to_the_proof():
+    robot = fp.load_robot("satellite_ur5")
+    goal = robot.configuration((3.0, 0.0, 0.0), joints="stowed")
+    problem = fp.Problem(robot, fp.Scene(), robot.configuration(joints="stowed"), goal)
+    pairs = [len(SearchSpace(problem, margin).arrays.pairs) for margin in (1e-3, 0.1, 10.0)]
+    assert pairs[0] > pairs[1] > pairs[2] == 0
+    assert fp.plan(problem, until="first").verify().ok

@@ -84,8 +84,8 @@ def test_more_weight_on_clearance_keeps_farther_away(robot):
 
 
 def test_the_base_stays_in_its_window(robot):
-    window = ((-0.5, -1.2, 0.0), (4.5, 1.2, 0.0))
-    plan = fp.plan(scattered(robot, 0, window=window), QUICK)
+    window = ((-0.5, -1.8, 0.0), (4.5, 1.8, 0.0))
+    plan = fp.plan(scattered(robot, 0, window=window), fp.TreePlanner(checks=300_000))
     assert np.all(plan.motion.positions >= window[0])
     assert np.all(plan.motion.positions <= window[1])
     assert plan.verify().ok

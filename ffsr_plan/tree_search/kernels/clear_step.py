@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ffsr_plan.collision.nearest_sphere_kernels import nearest_sphere
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
@@ -150,3 +152,14 @@ def link_step(space: SearchArrays, margin: float, step: float) -> float:
         if near < far and speed > 0.0:
             step = min(step, safe_way(near - margin, least) / speed)
     return step
+
+
+@kernel
+def pair_gaps(space: SearchArrays) -> Array:
+    """(p,) lower bounds on the distances of all pairs of shapes that have been placed [m]."""
+    gaps = np.empty(len(space.pairs))
+    for k in range(len(space.pairs)):
+        one, two = space.shapes[space.pairs[k, 0]], space.shapes[space.pairs[k, 1]]
+        skins = one.skin + two.skin
+        gaps[k] = core_gap(one.frame, two.frame, one.core, two.core, skins, math.inf)
+    return gaps

@@ -31,6 +31,7 @@ _LEAST, _LARGEST = 0.03, 0.8  # displacement of a lane
 _SCATTER = 0.3  # share of it that is drawn for each state
 _LEAST_WEIGHT = 0.2
 _GAIN = 1e-9  # [m] by which a path has to be better
+_NEAREST = 1e-9  # [m] that a clearance counts at least
 _ATTEMPTS = 400  # paths that are flown
 
 
@@ -139,7 +140,9 @@ def edge_costs(space: SearchArrays, memory: PathMemory, last: int, states: Array
                 place = memory.passed[last] * (layer + 1) / (LAYERS + 1)
                 corner = edge_at(memory.passed, last, place)
                 state = states[layer + 1, head]
-                near = share / clearance_at(space, state, memory.attitudes[0, corner])
+                near = share / max(
+                    clearance_at(space, state, memory.attitudes[0, corner]), _NEAREST
+                )
             for tail in range(tails):
                 length = distance(weights, 1, states[layer, tail], states[layer + 1, head])
                 steps[layer, tail, head] = length + near

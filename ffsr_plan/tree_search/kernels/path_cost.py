@@ -9,8 +9,6 @@ change it.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ffsr_plan.collision.nearest_sphere_kernels import nearest_sphere
@@ -64,18 +62,18 @@ def nearness(space: SearchArrays, states: Array, attitudes: Array, last: int) ->
             for a in range(count):
                 end[a] = states[k, a] + share * (states[k + 1, a] - states[k, a])
             fly(space, begin, quat, end, arrival, False)
-            total += 1.0 / clearance_at(space, end, arrival)
+            total += 1.0 / max(clearance_at(space, end, arrival), _NEAREST)
             begin[:] = end
             quat[:] = arrival
             station += 1
         passed += length
-    # rounding may leave the last one out
-    return total + (STATIONS + 1 - station) / clearance_at(space, states[last], attitudes[last])
+    least = max(clearance_at(space, states[last], attitudes[last]), _NEAREST)
+    return total + (STATIONS + 1 - station) / least  # rounding may leave the last one out
 
 
 @kernel
 def clearance_at(space: SearchArrays, state: Array, attitude: Array) -> float:
-    """Least distance to an obstacle at a state, as F counts it [m]."""
+    """Least distance to an obstacle at a state, at most that which F counts [m]."""
     setup, memory = space.setup[0], np.empty(15)
     position, turn, base = memory[:3], memory[3:12], memory[12:]
     setup.checks += 1
@@ -83,6 +81,8 @@ def clearance_at(space: SearchArrays, state: Array, attitude: Array) -> float:
     locate(space, state, state, 0.0, attitude, position, turn, base)
     place_shapes(space)
     least = setup.cap
+    if len(space.tree.spheres) == 0:
+        return least
     for g in range(len(space.shapes)):
         put_in_world(space, g, position, turn)
         near, row = nearest_sphere(
@@ -91,4 +91,4 @@ def clearance_at(space: SearchArrays, state: Array, attitude: Array) -> float:
         )  # fmt: skip
         if row >= 0:
             least = near
-    return max(least, _NEAREST) if math.isfinite(least) else math.inf
+    return least
