@@ -6,7 +6,9 @@ those of lattice nodes during a search, any others during refinement.
 
 from __future__ import annotations
 
+from functools import cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.proof.course import course_in_base, course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import (
@@ -27,6 +30,9 @@ from ffsr_plan.proof.motion_edges import (
 )
 from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from ffsr_plan.proof.kernels.course import Course
 
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
 _ITERATION_ERROR = 1e-7  # [m] for distances that Coal iterates to 1e-8
@@ -58,7 +64,8 @@ class Prover:
         self._corners = shape_placements(nominal.robot, nominal.configurations())
         self.speeds = self._travel.speeds
         self.rounding = ROUNDING + self._travel.attitude_error
-        if not nominal.robot.primitives.exact.all():
+        self._exact = bool(nominal.robot.primitives.exact.all())
+        if not self._exact:
             largest = float(np.max(scene.radii, initial=0.0))
             self.rounding += _ITERATION_ERROR + _RELATIVE_ITERATION_ERROR * largest
 
@@ -80,7 +87,7 @@ class Prover:
         return self._obstacles.distances_at(self._corners, layers, offsets)
 
     def half_way(self, layers: IntArray, offsets: Array) -> Array:
-        """Clearances half-way on edges of the displaced motion.
+        """Clearances half-way on edges of the displaced motion, in closed form for a search.
 
         Args:
             layers: (k,) edges.
@@ -89,7 +96,7 @@ class Prover:
         Returns:
             (k,) distances to the nearest obstacle [m].
         """
-        return self._obstacles.distances_at(self._placements.between(2), layers, offsets)
+        return self._obstacles.closed_at(self._placements.between(2), layers, offsets)
 
     def sampled_edges(
         self, layers: IntArray, tails: Array, heads: Array, ends: Array
@@ -152,7 +159,53 @@ class Prover:
             head: (3,) offset at its end [m].
             ends: clearances at both ends [m].
         """
-        return certify(self.obstacle_edge(layer, tail, head), ends, self.tolerance)
+        edge = np.array([layer]), tail[None], head[None], np.array([ends])
+        (verdict,) = self.certify_all(*edge)
+        return verdict
+
+    def certify_all(
+        self, layers: IntArray, tails: Array, heads: Array, ends: Array
+    ) -> list[Verdict]:
+        """Prove of many edges that they are free of obstacles, or refuse them.
+
+        Distances in closed form decide where they do so by far more than their error; a refusal is
+        confirmed by Coal, and what they leave open is decided on Coal's distances alone.
+
+        Args:
+            layers: (k,) the edges.
+            tails: (k, 3) offsets at their starts [m].
+            heads: (k, 3) offsets at their ends [m].
+            ends: (k, 2) clearances at their starts and ends [m].
+        """
+        if self._course is None:
+            return [Verdict(True, np.inf, 0.0, 0)] * len(layers)
+        if not len(layers):
+            return []
+        from ffsr_plan.proof.kernels.edge_proof import PROVEN, TOUCHED, prove
+
+        found = prove(
+            self._course, self.speeds, layers, tails, heads, ends, self.rounding, self.tolerance
+        )
+        verdicts = []
+        columns = (column.tolist() for column in found)
+        for k, (state, least, time, count) in enumerate(zip(*columns, strict=True)):
+            if state == PROVEN:
+                verdicts.append(Verdict(True, least, time, count))
+                continue
+            edge = self.obstacle_edge(int(layers[k]), tails[k], heads[k])
+            touched = edge.clearance(time) if state == TOUCHED and self._exact else np.inf
+            if touched <= 0.0:
+                verdicts.append(Verdict(False, touched, time, count))
+            else:
+                verdicts.append(certify(edge, (ends[k, 0], ends[k, 1]), self.tolerance))
+        return verdicts
+
+    @cached_property
+    def _course(self) -> Course | None:
+        """The motion among the obstacles for kernels; None where there are none."""
+        if self._obstacles.empty:
+            return None
+        return course_of(self._motion, self._scene, self._travel)
 
     def least_clearance(self, offsets: Array, clearances: Array) -> float:
         """Proven lower bound on the clearance all along a path whose edges are free.
@@ -164,12 +217,20 @@ class Prover:
         Returns:
             The bound [m].
         """
+        if self._course is not None and self._exact:
+            from ffsr_plan.proof.kernels.path_clearance import path_clearance
+
+            found = path_clearance(
+                self._course, self.speeds, np.ascontiguousarray(offsets), clearances,
+                self.rounding, _BOUND_PRECISION,
+            )  # fmt: skip
+            return max(float(found), 0.0)  # not negative, because the edges have been proven free
         bound = least = float(np.min(clearances))
         for layer, ends in enumerate(pairwise(map(float, clearances))):
             edge = self.obstacle_edge(layer, offsets[layer], offsets[layer + 1])
             edge_bound, least = clearance_bound(edge, ends, least, _BOUND_PRECISION)
             bound = min(bound, edge_bound)
-        return max(bound, 0.0)  # not negative, because the edges have been proven free
+        return max(bound, 0.0)
 
     def nearest(self, layer: int, tail: Array, head: Array, time: float) -> Nearest:
         """The nearest link and obstacle at a time on an edge.
@@ -222,18 +283,21 @@ class Prover:
                 raise NoPath(layer + 1, links, self._motion.edges, contacts, advice)
 
     def self_verdicts(self) -> list[Verdict]:
-        """(m,) for each edge, whether links that must not touch are proven apart."""
-        motion = self._motion
+        """(m,) for each edge, whether links that must not touch are proven apart.
+
+        Lower bounds decide for the pairs that are far apart; Coal measures the others.
+        """
+        motion, rounding = self._motion, ROUNDING + _ITERATION_ERROR
+        verdicts = [Verdict(True, np.inf, 0.0, 0)] * motion.edges
         if self._self.empty:
-            return [Verdict(True, np.inf, 0.0, 0)] * motion.edges
-        rounding = ROUNDING + _ITERATION_ERROR
-        edges = [
-            SelfCollisionEdge(self._self, motion, self._travel, layer, rounding)
-            for layer in range(motion.edges)
-        ]
-        starts = [edge.clearance(0.0) for edge in edges]
-        starts.append(edges[-1].clearance(1.0))
-        return [
-            certify(edge, ends, self.tolerance)
-            for edge, ends in zip(edges, pairwise(starts), strict=True)
-        ]
+            return verdicts
+        from ffsr_plan.proof.kernels.apart import prove_apart
+
+        course = course_in_base(motion, self._travel)
+        proven = prove_apart(course, self._self.pairs, rounding)
+        for layer in np.flatnonzero(~proven.all(axis=1)).tolist():
+            pairs = np.flatnonzero(~proven[layer])
+            edge = SelfCollisionEdge(self._self, motion, self._travel, layer, pairs, rounding)
+            ends = edge.clearance(0.0), edge.clearance(1.0)
+            verdicts[layer] = certify(edge, ends, self.tolerance)
+        return verdicts

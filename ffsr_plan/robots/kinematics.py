@@ -48,6 +48,41 @@ class Velocities(NamedTuple):
     linear: Array
 
 
+class Bodies(NamedTuple):
+    """The n links of a robot as arrays for compiled kernels; the base is link 0, its own parent.
+
+    A link's rotation relative to its parent is fixed + sin(q) sine + (1 - cos(q)) versine, and its
+    origin in the parent's frame is offset + q slide.
+
+    Attributes:
+        parents: (n,) parent of each link.
+        prismatic: (n,) whether the joint above the link is prismatic.
+        fixed: (n, 3, 3) rotation at joint value zero.
+        sine: (n, 3, 3), zero for prismatic joints.
+        versine: (n, 3, 3), zero for prismatic joints.
+        offsets: (n, 3) [m].
+        slides: (n, 3), zero for revolute joints.
+        axes: (n, 3) joint axis in the link's frame, zero for the base.
+        masses: (n,) [kg].
+        levers: (n, 3) centre of mass in the link's frame [m].
+        inertias: (n, 3, 3) about the centre of mass, link axes [kg m^2].
+        moments: (n, 2) least and largest principal moment [kg m^2].
+    """
+
+    parents: IntArray
+    prismatic: Flags
+    fixed: Array
+    sine: Array
+    versine: Array
+    offsets: Array
+    slides: Array
+    axes: Array
+    masses: Array
+    levers: Array
+    inertias: Array
+    moments: Array
+
+
 class Tree:
     """Kinematic tree of the links of a robot, the base being its root.
 
@@ -84,6 +119,30 @@ class Tree:
         self._fixed, self._sine = rotations, rotations @ skew
         self._versine = rotations @ skew @ skew
         self._slide = np.einsum("nij,nj->ni", rotations, self._prismatic_axes)
+
+    def bodies(self, model: pin.Model) -> Bodies:
+        """The links and their masses as arrays.
+
+        Args:
+            model: the model that the tree was made from.
+        """
+        inertias = list(model.inertias)[1:]
+        about_center = np.array([body.inertia for body in inertias])
+        moments = np.maximum(np.linalg.eigvalsh(about_center), 0.0)
+        return Bodies(
+            self.parents,
+            self.prismatic,
+            self._fixed,
+            self._sine,
+            self._versine,
+            self._offsets,
+            self._slide,
+            self.axes,
+            np.array([body.mass for body in inertias]),
+            np.array([body.lever for body in inertias]),
+            about_center,
+            np.ascontiguousarray(moments[:, [0, 2]]),
+        )
 
     def offsets(self, joint_values: Array) -> Array:
         """Origins of the links in their parents' frames.

@@ -19,7 +19,7 @@ from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
 from ffsr_plan.core.text_files import write_files
 from ffsr_plan.robots.collision_shapes import Containers, Replacement
-from ffsr_plan.robots.kinematics import Components, Tree
+from ffsr_plan.robots.kinematics import Bodies, Components, Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import NO_POSTURE, named_postures
 from ffsr_plan.robots.urdf.inertias import Balanced
@@ -163,6 +163,11 @@ class SpaceRobot:
     def tree(self) -> Tree:
         """The kinematic tree, which computes poses of many configurations at once."""
         return Tree(self.model)
+
+    @cached_property
+    def bodies(self) -> Bodies:
+        """The links and their masses as arrays for compiled kernels."""
+        return self.tree.bodies(self.model)
 
     @cached_property
     def primitives(self) -> Primitives:

@@ -20,8 +20,8 @@ import ffsr_plan as fp
 from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, table
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
-from ffsr_plan.proof.link_bounds import link_motion
-from ffsr_plan.proof.travel_bound import TravelBound
+from ffsr_plan.proof.kernels.travel import BaseMotion
+from ffsr_plan.proof.travel_bound import IntervalTravel, TravelBound
 from ffsr_plan.robots.kinematics import Tree, turned
 from tests.helpers.random_robots import random_tree
 
@@ -70,7 +70,6 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
     about = relative_places(robot, begin[every] + times.reshape(-1, 1) * steps[every])
     bound = TravelBound(robot)
     now, rates = begin[edge] + middles[:, None] * steps[edge], steps[edge]
-    links = link_motion(robot.tree, now, rates, lengths)
     base = rng.normal(size=(len(edge), 3))
     base *= BASE_STEP / np.linalg.norm(base, axis=1, keepdims=True)
     which = np.broadcast_to(np.arange(len(BASES)), shape).ravel()
@@ -81,12 +80,13 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
         if mode == "free-flying":
             quats = reaction.rotation(every, times.ravel())
             at_middle = reaction.rotation(edge, middles)
-            travel = bound.reacting(links, at_middle, 0.0).world
+            moved = BaseMotion(True, False, np.zeros(3), 0.0)
+            travel = bound.in_world(now, rates, lengths, moved, at_middle)
             omega = None
         else:
             quats = rotations.exp(times.reshape(-1, 1) * turns[every])
             at_middle = rotations.exp(middles[:, None] * turns[edge])
-            travel = bound.held(links, at_middle, turns[edge]).world
+            travel = held_travel(bound, (now, rates, lengths, at_middle), turns)
             omega = np.linalg.norm(turns, axis=1)
         points = rng.integers(travel.speed.shape[1], size=len(edge))
         follows = -travel.velocity[np.arange(len(edge)), points]
@@ -102,11 +102,24 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
         yield Found(scales, *(x.reshape(*shape, -1) for x in (sampled, bounds, simple)))
 
 
+def held_travel(
+    bound: TravelBound, intervals: "tuple[np.ndarray, ...]", turns: np.ndarray
+) -> IntervalTravel:
+    """The bound for a base that turns; as many intervals in a row for each of the turns (e, 3)."""
+    parts = [np.split(array, len(turns)) for array in intervals]
+    travels = [
+        bound.in_world(*each[:3], BaseMotion(False, False, turn, 0.0), each[3])
+        for turn, each in zip(turns, zip(*parts, strict=True), strict=True)
+    ]
+    arrays = [np.concatenate(columns) for columns in zip(*(t[:5] for t in travels), strict=True)]
+    return IntervalTravel(*arrays, travels[0].first)
+
+
 def relative_places(robot: fp.SpaceRobot, joint_values: np.ndarray) -> np.ndarray:
     """(N, P, 3) points of all shapes relative to the base; `Tree` is tested against Pinocchio."""
-    poses, bound = Tree(robot.model).poses(joint_values), TravelBound(robot)
-    links, points = bound.links, bound.points
-    return poses.origins[:, links] + turned(poses.rotations[:, links], points)
+    poses, points = Tree(robot.model).poses(joint_values), TravelBound(robot).points
+    links = points.links
+    return poses.origins[:, links] + turned(poses.rotations[:, links], points.places)
 
 
 def simple_speeds(
@@ -131,11 +144,11 @@ def simple_speeds(
             energy += body.mass * speed**2 + most * angular[:, j] ** 2
             inertia += least
         omega = np.sqrt(energy / inertia)
-    bound = TravelBound(robot)
-    reach = np.linalg.norm(bound.points, axis=1)
-    speeds = omega[:, None] * (distance[:, bound.links] + reach)
-    speeds += linear[:, bound.links] + angular[:, bound.links] * reach
-    return np.maximum.reduceat(speeds, bound.first, axis=-1)
+    points = TravelBound(robot).points
+    reach = np.linalg.norm(points.places, axis=1)
+    speeds = omega[:, None] * (distance[:, points.links] + reach)
+    speeds += linear[:, points.links] + angular[:, points.links] * reach
+    return np.maximum.reduceat(speeds, points.first[:-1], axis=-1)
 
 
 class Ratios:

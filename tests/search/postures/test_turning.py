@@ -374,7 +374,7 @@ def test_an_axis_towards_a_posture_ends_in_it():
 
 
 def test_too_many_postures_are_refused_before_memory_runs_out():
-    axes = [fp.PostureAxis({name: 1.0}, 20, 0.1) for name in ("left_1", "left_2", "right_1")]
+    axes = [fp.PostureAxis({name: 1.0}, 40, 0.05) for name in ("left_1", "left_2", "right_1")]
     with pytest.raises(fp.InvalidInput, match="lattice postures"):
         fp.plan(turning(10, fp.Lattice(40, postures=axes)))
 
