@@ -202,11 +202,12 @@ class AttitudeOutOfReach(PlanningError):
 
     def message(self) -> str:
         """All three angles in degrees, and which settings may help."""
+        longer = "a longer time_limit, " if getattr(self.best, "interrupted", False) else ""
         return (
             f"goal attitude out of reach: the best joint path rotates the base by "
             f"{math.degrees(self.turned):.1f} of {math.degrees(self.wanted):.1f} degrees and "
-            f"misses the goal by {math.degrees(self.missed):.2g} degrees; more divisions, wider or "
-            "more posture axes, or another seed may help"
+            f"misses the goal by {math.degrees(self.missed):.2g} degrees; {longer}more divisions, "
+            "wider or more posture axes, or another seed may help"
         )
 
 

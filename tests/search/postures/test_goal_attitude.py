@@ -108,6 +108,9 @@ def test_the_error_holds_the_best_plan_that_was_proven(colonies):
     assert "goal's attitude is missed" in missed
     assert "missed by" in dict(plan_rows(best))["goal attitude"]
     assert pickle.loads(pickle.dumps(error)).missed == error.missed
+    assert "time_limit" not in str(error)
+    error.best = replace(best, interrupted=True)
+    assert "a longer time_limit, more divisions" in str(error)
 
 
 def test_of_several_colonies_the_closest_miss_is_told(monkeypatch):
