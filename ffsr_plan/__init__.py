@@ -12,67 +12,67 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from ffsr_plan.collision.distances import Clearance, clearance
-from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
-from ffsr_plan.core import errors
-from ffsr_plan.core.contacts import Contact
-from ffsr_plan.core.errors import (
-    AttitudeOutOfReach,
-    FfsrPlanError,
-    GoalInCollision,
-    GoalPoseIgnored,
-    HeldBase,
-    IntegrationError,
-    InternalError,
-    InvalidInput,
-    NoPath,
-    PlanningError,
-    PlanNotVerified,
-    PoseOutOfReach,
-    StartInCollision,
-    UncheckedLinks,
-    UnprovenPath,
-    WorkerDied,
-)
-from ffsr_plan.dynamics import momentum
-from ffsr_plan.dynamics.actuation_mode import Mode
-from ffsr_plan.dynamics.inverse_dynamics import States
-from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
-from ffsr_plan.lattice.certificate import Certificate, Counts
-from ffsr_plan.lattice.layered_lattice import LayeredLattice
-from ffsr_plan.lattice.roadmap import Roadmap
-from ffsr_plan.planning.certified_plan import Plan
-from ffsr_plan.planning.plan_and_refine import plan, refine
-from ffsr_plan.problem.end_effector_goal import inverse_kinematics
-from ffsr_plan.problem.lattice_settings import Axis, Lattice
-from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
-from ffsr_plan.problem.problem import Problem
-from ffsr_plan.proof.interval_halving import Verdict
-from ffsr_plan.proof.single_edge_proof import EdgeProof, certify_edge
-from ffsr_plan.robots.collision_shapes import Replacement
-from ffsr_plan.robots.kinematics import Components
-from ffsr_plan.robots.loading import load_robot, robot_names
-from ffsr_plan.robots.robot import SpaceRobot
-from ffsr_plan.robots.summary import RobotSummary, robot_summaries
-from ffsr_plan.robots.urdf.inertias import Balanced
-from ffsr_plan.robots.urdf.joints import RateLimits
-from ffsr_plan.satellites.arms import arm_names
-from ffsr_plan.satellites.bus import Bus, Panel
-from ffsr_plan.satellites.composition import Mount, compose
-from ffsr_plan.scene import generators
-from ffsr_plan.scene.scene import Scene
-from ffsr_plan.search.ants.ant_system import AntSystem
-from ffsr_plan.search.ants.max_min import MaxMinAntSystem
-from ffsr_plan.search.optimum_planner import LatticeOptimum
-from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
-from ffsr_plan.search.records import Cycle, History, SearchResult, Solution, Trails
-from ffsr_plan.trajectory.timed_plan import TimedPlan
-
 if TYPE_CHECKING:
+    from ffsr_plan.collision.distances import Clearance, clearance
+    from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
+    from ffsr_plan.core import errors
+    from ffsr_plan.core.contacts import Contact
+    from ffsr_plan.core.errors import (
+        AttitudeOutOfReach,
+        FfsrPlanError,
+        GoalInCollision,
+        GoalPoseIgnored,
+        HeldBase,
+        IntegrationError,
+        InternalError,
+        InvalidInput,
+        NoPath,
+        PlanningError,
+        PlanNotVerified,
+        PoseOutOfReach,
+        StartInCollision,
+        UncheckedLinks,
+        UnprovenPath,
+        WorkerDied,
+    )
     from ffsr_plan.display.live_view import LiveView
     from ffsr_plan.display.page_server import PageServer
+    from ffsr_plan.dynamics import momentum
+    from ffsr_plan.dynamics.actuation_mode import Mode
+    from ffsr_plan.dynamics.inverse_dynamics import States
+    from ffsr_plan.dynamics.motion import Motion
+    from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
+    from ffsr_plan.lattice.certificate import Certificate, Counts
+    from ffsr_plan.lattice.layered_lattice import LayeredLattice
+    from ffsr_plan.lattice.roadmap import Roadmap
+    from ffsr_plan.planning.certified_plan import Plan
+    from ffsr_plan.planning.plan_and_refine import plan, refine
+    from ffsr_plan.planning.warm_up import warm_up
+    from ffsr_plan.problem.end_effector_goal import inverse_kinematics
+    from ffsr_plan.problem.lattice_settings import Axis, Lattice
+    from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
+    from ffsr_plan.problem.problem import Problem
+    from ffsr_plan.proof.interval_halving import Verdict
+    from ffsr_plan.proof.single_edge_proof import EdgeProof, certify_edge
+    from ffsr_plan.robots.collision_shapes import Replacement
+    from ffsr_plan.robots.kinematics import Components
+    from ffsr_plan.robots.loading import load_robot, robot_names
+    from ffsr_plan.robots.robot import SpaceRobot
+    from ffsr_plan.robots.summary import RobotSummary, robot_summaries
+    from ffsr_plan.robots.urdf.inertias import Balanced
+    from ffsr_plan.robots.urdf.joints import RateLimits
+    from ffsr_plan.satellites.arms import arm_names
+    from ffsr_plan.satellites.bus import Bus, Panel
+    from ffsr_plan.satellites.composition import Mount, compose
     from ffsr_plan.scenario_files.scenario import Scenario, load_scenario
+    from ffsr_plan.scene import generators
+    from ffsr_plan.scene.scene import Scene
+    from ffsr_plan.search.ants.ant_system import AntSystem
+    from ffsr_plan.search.ants.max_min import MaxMinAntSystem
+    from ffsr_plan.search.optimum_planner import LatticeOptimum
+    from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
+    from ffsr_plan.search.records import Cycle, History, SearchResult, Solution, Trails
+    from ffsr_plan.trajectory.timed_plan import TimedPlan
     from ffsr_plan.verification.verify import Report
 
 __version__ = "0.2.0.dev0"
@@ -152,21 +152,86 @@ __all__ = [
     "robot_names",
     "robot_summaries",
     "self_collisions",
+    "warm_up",
 ]
 
-_LAZY = {  # modules that take time to import and that not every script needs
-    "LiveView": "display.live_view",
-    "PageServer": "display.page_server",
-    "Report": "verification.verify",
-    "Scenario": "scenario_files.scenario",
-    "load_scenario": "scenario_files.scenario",
+_NAMES = {  # by module; each is loaded when one of its names is first used
+    "collision.distances": ("Clearance", "clearance"),
+    "collision.self_collisions": ("SelfCollision", "SelfCollisions", "self_collisions"),
+    "core.contacts": ("Contact",),
+    "core.errors": (
+        "AttitudeOutOfReach",
+        "FfsrPlanError",
+        "GoalInCollision",
+        "GoalPoseIgnored",
+        "HeldBase",
+        "IntegrationError",
+        "InternalError",
+        "InvalidInput",
+        "NoPath",
+        "PlanNotVerified",
+        "PlanningError",
+        "PoseOutOfReach",
+        "StartInCollision",
+        "UncheckedLinks",
+        "UnprovenPath",
+        "WorkerDied",
+    ),
+    "display.live_view": ("LiveView",),
+    "display.page_server": ("PageServer",),
+    "dynamics.actuation_mode": ("Mode",),
+    "dynamics.inverse_dynamics": ("States",),
+    "dynamics.motion": ("Motion",),
+    "dynamics.wheel_momentum": ("WheelMomentum",),
+    "lattice.certificate": ("Certificate", "Counts"),
+    "lattice.layered_lattice": ("LayeredLattice",),
+    "lattice.roadmap": ("Roadmap",),
+    "planning.certified_plan": ("Plan",),
+    "planning.plan_and_refine": ("plan", "refine"),
+    "planning.warm_up": ("warm_up",),
+    "problem.end_effector_goal": ("inverse_kinematics",),
+    "problem.lattice_settings": ("Axis", "Lattice"),
+    "problem.posture_axes": ("PostureAxis", "PostureTarget"),
+    "problem.problem": ("Problem",),
+    "proof.interval_halving": ("Verdict",),
+    "proof.single_edge_proof": ("EdgeProof", "certify_edge"),
+    "robots.collision_shapes": ("Replacement",),
+    "robots.kinematics": ("Components",),
+    "robots.loading": ("load_robot", "robot_names"),
+    "robots.robot": ("SpaceRobot",),
+    "robots.summary": ("RobotSummary", "robot_summaries"),
+    "robots.urdf.inertias": ("Balanced",),
+    "robots.urdf.joints": ("RateLimits",),
+    "satellites.arms": ("arm_names",),
+    "satellites.bus": ("Bus", "Panel"),
+    "satellites.composition": ("Mount", "compose"),
+    "scenario_files.scenario": ("Scenario", "load_scenario"),
+    "scene.scene": ("Scene",),
+    "search.ants.ant_system": ("AntSystem",),
+    "search.ants.max_min": ("MaxMinAntSystem",),
+    "search.optimum_planner": ("LatticeOptimum",),
+    "search.postures.posture_annealing": ("PostureAnnealing",),
+    "search.records": ("Cycle", "History", "SearchResult", "Solution", "Trails"),
+    "trajectory.timed_plan": ("TimedPlan",),
+    "verification.verify": ("Report",),
+}
+_HOME = {name: module for module, names in _NAMES.items() for name in names}
+_MODULES = {
+    "errors": "core.errors",
+    "generators": "scene.generators",
+    "momentum": "dynamics.momentum",
 }
 
 
 def __getattr__(name: str) -> object:
-    if name in _LAZY:
-        return getattr(import_module(f"ffsr_plan.{_LAZY[name]}"), name)
-    raise AttributeError(f"module 'ffsr_plan' has no attribute '{name}'")
+    if name in _MODULES:
+        found: object = import_module(f"ffsr_plan.{_MODULES[name]}")
+    elif name in _HOME:
+        found = getattr(import_module(f"ffsr_plan.{_HOME[name]}"), name)
+    else:
+        raise AttributeError(f"module 'ffsr_plan' has no attribute '{name}'")
+    globals()[name] = found
+    return found
 
 
 def __dir__() -> list[str]:

@@ -1,6 +1,5 @@
 """The command line."""
 
 from ffsr_plan.cli.commands import app, main
-from ffsr_plan.cli.result_files import RESULTS
 
-__all__ = ["RESULTS", "app", "main"]
+__all__ = ["app", "main"]

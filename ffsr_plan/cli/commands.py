@@ -1,4 +1,6 @@
-"""Commands `ffsr-plan demo | plan | verify | view | export | gif | timed | robots | schema`.
+"""Commands `ffsr-plan demo | plan | verify | view | export | gif | timed | robots | ...`.
+
+What a command needs is loaded when it runs: `--help` needs none of it.
 
 Exit status: 0 done (also with the best plan so far, after Ctrl-C during the search), 1 no plan or a
 plan that does not verify, 2 bad input, 70 an error of the program itself, 130 interrupted: before
@@ -15,11 +17,7 @@ from typing import Annotated
 
 import typer
 
-from ffsr_plan.cli.planning import LiveOptions, Options, plan_and_report
-from ffsr_plan.cli.printed_tables import flight_table, report_table, robot_table
-from ffsr_plan.cli.result_files import check_replacement, check_target, unused_path
-from ffsr_plan.cli.terminal import errors_on_stderr, out_console, with_progress
-from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
+from ffsr_plan.cli.terminal import errors_on_stderr, out_console
 from ffsr_plan.search.interruption import end_command
 
 app = typer.Typer(
@@ -41,6 +39,8 @@ Browser = Annotated[
     bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace existing results.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
 
 
 def _print_version(wanted: bool) -> None:
@@ -64,12 +64,19 @@ def options(
 
 
 @app.command()
-def demo(out: Out = None, force: Force = False) -> None:
+def demo(
+    out: Out = None, force: Force = False, quiet: Quiet = False, as_json: Json = False
+) -> None:
     """Plan, verify and show the scene of the paper's Fig. 2(a) with the default planner."""
     with errors_on_stderr():
+        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.planning import Options, plan_and_report
+        from ffsr_plan.cli.result_files import check_target, unused_path
+
+        output = Output(quiet, as_json)
         target = check_target(out, force) if out is not None else unused_path(Path("ffsr-demo"))
         options = Options(planner="max-min-ant-system", refine=True)
-        plan_and_report("fig2a", options, target, check=True)
+        plan_and_report("fig2a", options, target, check=True, output=output)
 
 
 @app.command()
@@ -109,15 +116,28 @@ def plan(
     pace: Annotated[float, typer.Option(help="Least seconds per cycle with --watch.")] = 0.0,
     port: Port = 0,
     browser: Browser = True,
+    pictures: Annotated[
+        bool, typer.Option("--pictures/--no-pictures", help="Draw the figures of --out.")
+    ] = True,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Plan a scenario, verify the plan, and write it to the directory --out."""
     with errors_on_stderr():
+        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.planning import LiveOptions, Options, plan_and_report
+        from ffsr_plan.cli.result_files import check_target
+        from ffsr_plan.core.errors import InvalidInput
+
+        output = Output(quiet, as_json)
         target = check_target(out, force) if out is not None else None
         if not watch and (port or pace):
             raise InvalidInput("--watch", False, "--watch together with --port or --pace")
         live = LiveOptions(port, browser, pace) if watch else None
-        options = Options(planner, seed, refine, colonies, workers, time_limit, duration, live)
-        plan_and_report(scenario, options, target, check)
+        options = Options(
+            planner, seed, refine, colonies, workers, time_limit, duration, live, pictures
+        )
+        plan_and_report(scenario, options, target, check, output)
 
 
 @app.command()
@@ -129,16 +149,15 @@ def verify(
             help="Least number of steps on each edge, 50 by default; halved where needed."
         ),
     ] = None,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Verify a saved plan all along its motion, independently of the planner."""
     with errors_on_stderr():
-        from ffsr_plan.planning.certified_plan import Plan
+        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.saved_plans import verify_and_report
 
-        loaded = Plan.load(plan_file)
-        report = with_progress("verifying", lambda told: loaded.verify(samples, told))
-        out_console.print(report_table(report))
-        if not report.ok:
-            raise PlanNotVerified(report.problems)
+        verify_and_report(plan_file, samples, Output(quiet, as_json))
 
 
 @app.command()
@@ -152,6 +171,7 @@ def export(
 ) -> None:
     """Write the path of a saved plan as a CSV table with units in its header."""
     with errors_on_stderr():
+        from ffsr_plan.cli.result_files import check_replacement
         from ffsr_plan.planning.certified_plan import Plan
 
         check_replacement("PATH.csv", table, force)
@@ -169,6 +189,7 @@ def gif(
 ) -> None:
     """Write a saved plan as an animated GIF."""
     with errors_on_stderr():
+        from ffsr_plan.cli.result_files import check_replacement
         from ffsr_plan.planning.certified_plan import Plan
 
         check_replacement("PATH.gif", picture, force)
@@ -198,28 +219,27 @@ def timed(
     ] = None,
     rate: Annotated[float, typer.Option(help="Rows per second of --csv.")] = 10.0,
     force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
 ) -> None:
     """Time a saved plan as fast as the limits allow: duration, delta-v, thrust, torques."""
     with errors_on_stderr():
-        from ffsr_plan.planning.certified_plan import Plan
+        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.saved_plans import time_and_report
 
-        if csv is not None:
-            check_replacement("--csv", csv, force)
-        flight = Plan.load(plan_file).timed(
-            joint_acceleration=joint_acceleration,
-            thruster_acceleration=thruster_acceleration,
-            joint_velocity=joint_velocity,
-            base_velocity=base_velocity,
-            joint_torque=joint_torque,
-            joint_jerk=joint_jerk,
-            thruster_jerk=thruster_jerk,
-            turn_velocity=turn_velocity,
-            turn_acceleration=turn_acceleration,
-            velocity_jump=velocity_jump,
-        )
-        out_console.print(flight_table(flight))
-        if csv is not None:
-            flight.to_csv(csv, rate)
+        limits = {
+            "joint_acceleration": joint_acceleration,
+            "thruster_acceleration": thruster_acceleration,
+            "joint_velocity": joint_velocity,
+            "base_velocity": base_velocity,
+            "joint_torque": joint_torque,
+            "joint_jerk": joint_jerk,
+            "thruster_jerk": thruster_jerk,
+            "turn_velocity": turn_velocity,
+            "turn_acceleration": turn_acceleration,
+            "velocity_jump": velocity_jump,
+        }
+        time_and_report(plan_file, limits, csv, rate, force, Output(quiet, as_json))
 
 
 @app.command()
@@ -241,11 +261,21 @@ def view(
 def robots() -> None:
     """List the bundled robots, and the arms that `ffsr_plan.compose` can mount on a bus."""
     with errors_on_stderr():
+        from ffsr_plan.cli.printed_tables import robot_table
         from ffsr_plan.robots.summary import robot_summaries
         from ffsr_plan.satellites.arms import arm_names
 
         out_console.print(robot_table(robot_summaries()))
         out_console.print(f"Arms for your own bus: {', '.join(arm_names())}")
+
+
+@app.command()
+def warm_up() -> None:
+    """Compile all numerical kernels now, for images of containers and for measurements."""
+    with errors_on_stderr():
+        from ffsr_plan.cli.kernel_warm_up import warm_up_and_report
+
+        warm_up_and_report()
 
 
 @app.command()

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ffsr_plan.cli.printed_tables import plan_table
+from ffsr_plan.cli.output import Output
+from ffsr_plan.cli.plan_figures import plan_figures, report_figures
+from ffsr_plan.cli.printed_tables import plan_table, times_table
 from ffsr_plan.cli.result_files import write_results
-from ffsr_plan.cli.terminal import err_console, out_console, with_progress
+from ffsr_plan.cli.step_times import StepTimes
+from ffsr_plan.cli.terminal import err_console, with_progress
 from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.scenario_files.scenario import Scenario
     from ffsr_plan.search.records import Cycle
@@ -47,6 +52,7 @@ class Options(NamedTuple):
         time_limit: of the search [s].
         duration: of the motion [s], for the peak momentum of the wheels.
         live: options of the live view; None for no live view.
+        pictures: whether to draw the figures.
     """
 
     planner: str | None = None
@@ -57,9 +63,12 @@ class Options(NamedTuple):
     time_limit: float | None = None
     duration: float = 600.0
     live: LiveOptions | None = None
+    pictures: bool = True
 
 
-def plan_and_report(source: str, options: Options, target: Path | None, check: bool) -> None:
+def plan_and_report(
+    source: str, options: Options, target: Path | None, check: bool, output: Output
+) -> None:
     """Plan a scenario, write and print the result, and verify it.
 
     Args:
@@ -67,28 +76,57 @@ def plan_and_report(source: str, options: Options, target: Path | None, check: b
         options: of the command line.
         target: directory for the results, or None.
         check: whether to verify the plan.
+        output: where results and times are shown.
 
     Raises:
         PlanNotVerified: the plan does not verify; it is written and printed before.
         InvalidInput, PlanningError: see `Scenario.load` and `plan`.
     """
     from ffsr_plan.core.checks import number
-    from ffsr_plan.scenario_files.scenario import Scenario
 
+    times = StepTimes()
+    with times.step("loading", "loading the program"):
+        from ffsr_plan.planning import plan_and_refine  # noqa: F401 - which takes a while
+        from ffsr_plan.scenario_files.scenario import Scenario
     duration = number("--duration", options.duration, above=0.0)
-    scenario = _with_options(Scenario.load(source), options)
+    with times.step("reading", "reading scenario and robot"):
+        scenario = _with_options(Scenario.load(source), options)
     run = _plan_with_progress if options.live is None else _plan_with_live_view
-    plan = run(scenario, options)
+    with times.step("planning", _planning_words(scenario)):
+        plan = run(scenario, options, output)
+    report, files = None, []
     if target is not None:
-        write_results(plan, scenario.title, target)
-    report = None
+        with times.step("writing", "page and pictures" if options.pictures else "page"):
+            files = write_results(plan, scenario.title, target, options.pictures)
     if check:
-        report = with_progress("verifying", lambda told: plan.verify(on_progress=told))
-    out_console.print(plan_table(scenario.title, plan, report, duration))
-    if target is not None:
-        out_console.print(f"Written to {target}: open {target / 'plan.html'} in a browser.")
+        with times.step("verification", "verification"):
+            report = with_progress(
+                "verifying", lambda told: plan.verify(on_progress=told), not output.quiet
+            )
+
+    def readable() -> Iterator[RenderableType]:
+        yield plan_table(scenario.title, plan, report, duration)
+        yield times_table(times)
+        if target is not None:
+            yield f"Written to {target}: open {target / 'plan.html'} in a browser."
+
+    def data() -> dict[str, Any]:
+        return {
+            "plan": plan_figures(plan, scenario.title, duration),
+            "report": report_figures(report),
+            "times": times.seconds(),
+            "files": [str(path) for path in files],
+        }
+
+    output.show(readable, data)
     if report is not None and not report.ok:
         raise PlanNotVerified(report.problems)
+
+
+def _planning_words(scenario: Scenario) -> str:
+    """What planning consists of; its parts interleave and cannot be timed one by one."""
+    refined = scenario.refine is not False and not scenario.problem.lattice.postures
+    return "search, proof, refinement" if refined else "search and proof"
 
 
 def _with_options(scenario: Scenario, options: Options) -> Scenario:
@@ -106,7 +144,7 @@ def _with_options(scenario: Scenario, options: Options) -> Scenario:
     return replace(scenario, **changes)
 
 
-def _plan_with_live_view(scenario: Scenario, options: Options) -> Plan:
+def _plan_with_live_view(scenario: Scenario, options: Options, output: Output) -> Plan:
     """Plan while a page shows the search; afterwards it shows the plan."""
     from ffsr_plan.display.live_view import LiveView
 
@@ -123,21 +161,26 @@ def _plan_with_live_view(scenario: Scenario, options: Options) -> Plan:
     )
     with view:
         err_console.print(f"{view.url} shows the search")
-        plan = _plan_with_progress(scenario, options, view.on_cycle)
+        plan = _plan_with_progress(scenario, options, output, view.on_cycle)
         view.finish(plan)
     return plan
 
 
 def _plan_with_progress(
-    scenario: Scenario, options: Options, on_cycle: Callable[[Cycle], None] | None = None
+    scenario: Scenario,
+    options: Options,
+    output: Output,
+    on_cycle: Callable[[Cycle], None] | None = None,
 ) -> Plan:
     """Plan with a progress bar on a terminal if the search takes more than a second."""
     from rich.progress import Progress
 
     from ffsr_plan.planning.plan_and_refine import plan as make_plan
 
-    begin, on_terminal = time.monotonic(), err_console.is_terminal
-    with Progress(console=err_console, transient=True, auto_refresh=False) as progress:
+    begin, on_terminal = time.monotonic(), err_console.is_terminal and not output.quiet
+    with Progress(
+        console=err_console, transient=True, auto_refresh=False, disable=not on_terminal
+    ) as progress:
         task = progress.add_task("ants", visible=False)
 
         def show(cycle: Cycle) -> None:

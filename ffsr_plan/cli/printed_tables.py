@@ -13,12 +13,11 @@ from ffsr_plan.core.formatting import counted
 from ffsr_plan.plans.plan_summary import plan_rows
 
 if TYPE_CHECKING:
+    from ffsr_plan.cli.flight_figures import FlightFigures
+    from ffsr_plan.cli.step_times import StepTimes
     from ffsr_plan.plans.plan_data import PlanData
     from ffsr_plan.robots.summary import RobotSummary
-    from ffsr_plan.trajectory.timed_plan import TimedPlan
     from ffsr_plan.verification.verify import Report
-
-_PEAK_SAMPLES = 10_001  # times at which peaks of a flight are taken
 
 
 def plan_table(title: str, plan: PlanData, report: Report | None, duration: float) -> Table:
@@ -39,7 +38,12 @@ def report_table(report: Report) -> Table:
     return _two_columns(report_rows(report))
 
 
-def flight_table(flight: TimedPlan) -> Table:
+def times_table(times: StepTimes) -> Table:
+    """The times that the steps of a command took."""
+    return _two_columns(times.rows(), "Time taken")
+
+
+def flight_table(flight: FlightFigures) -> Table:
     """A timed plan: duration, delta-v and peak loads."""
     return _two_columns(flight_rows(flight))
 
@@ -88,33 +92,27 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
     yield "  not checked", "\n".join(report.not_checked)
 
 
-def flight_rows(flight: TimedPlan) -> Iterator[tuple[str, str]]:
-    """Names and values of a timed plan; peaks are over ten thousand instants."""
-    robot = flight.motion.robot
-    times = np.linspace(0.0, flight.duration, _PEAK_SAMPLES)
-    states = flight.at(times)
-    mass = sum(body.mass for body in list(robot.model.inertias)[1:])
-    thrust = states.thrust + mass * flight.pulse_accelerations(times)
+def flight_rows(flight: FlightFigures) -> Iterator[tuple[str, str]]:
+    """Names and values of a timed plan."""
     yield "duration", f"{flight.duration:.2f} s"
-    yield "rests on the way", f"{len(flight.rests)}, at corners of the path"
-    if len(flight.pulses):
-        largest = np.max(np.linalg.norm(flight.pulses, axis=1))
-        longest = np.max(flight.pulse_durations)
-        text = f"{len(flight.pulses)}, the largest {largest:.3g} m/s, the longest {longest:.3g} s"
+    yield "rests on the way", f"{flight.rests}, at corners of the path"
+    if flight.pulses:
+        largest, longest = flight.largest_pulse, flight.longest_pulse
+        text = f"{flight.pulses}, the largest {largest:.3g} m/s, the longest {longest:.3g} s"
         yield "pulses", text
         yield "corner cut by them", f"at most {flight.corner_cut:.3g} m"
     yield "delta-v of the translation", f"{flight.delta_v:.4g} m/s"
-    yield "peak thrust", f"{np.max(np.linalg.norm(thrust, axis=1)):.3g} N"
-    if flight.motion.mode.has_wheels:
-        for name, values, unit in (
-            ("torque", states.wheel_torque, "N m"),
-            ("momentum", states.wheel_momentum, "N m s"),
-        ):
-            x, y, z = np.max(np.abs(values), axis=0)
+    yield "peak thrust", f"{flight.peak_thrust:.3g} N"
+    for name, values, unit in (
+        ("torque", flight.peak_wheel_torque, "N m"),
+        ("momentum", flight.peak_wheel_momentum, "N m s"),
+    ):
+        if values is not None:
+            x, y, z = values
             yield f"peak wheel {name}", f"x {x:.3g}, y {y:.3g}, z {z:.3g} {unit} in base axes"
-    for k, name in enumerate(robot.joint_names):
-        peak = np.max(np.abs(states.torques[:, k]))
-        yield f"peak of {name}", f"{peak:.3g} " + ("N" if robot.prismatic[k] else "N m")
+    for loads, unit in ((flight.peak_joint_torques, "N m"), (flight.peak_joint_forces, "N")):
+        for name, load in loads.items():
+            yield f"peak of {name}", f"{load:.3g} {unit}"
 
 
 def _two_columns(rows: Iterable[tuple[str, str]], title: str = "") -> Table:

@@ -18,20 +18,24 @@ RESULTS = ("plan.json", "plan.html", "path.png", "clearance.png", "convergence.p
 """Files in the directory of `--out`."""
 
 
-def write_results(plan: Plan, title: str, target: Path) -> None:
+def write_results(plan: Plan, title: str, target: Path, pictures: bool = True) -> list[Path]:
     """Write plan, page and figures into a directory: all files or none, and each of them whole.
 
-    If that fails, the plan alone is written, under a name that is not in use.
+    If that fails, the plan alone is written, under a name that is not in use. Without figures,
+    those of an earlier plan are removed when the new plan is there.
 
     Args:
         plan: the plan.
         title: of the page.
         target: the directory, made if it is not there.
+        pictures: whether to draw the figures.
+
+    Returns:
+        Paths of the files.
 
     Raises:
         InvalidInput: the directory or a file in it cannot be written.
     """
-    from ffsr_plan.display.figures import figure_files
     from ffsr_plan.display.plan_page import page
     from ffsr_plan.plans.plan_file import to_text
 
@@ -43,13 +47,19 @@ def write_results(plan: Plan, title: str, target: Path) -> None:
         contents: dict[str, str | bytes] = {
             "plan.json": to_text(plan),
             "plan.html": page(plan, title),
-            **figure_files(plan),
         }
+        if pictures:
+            from ffsr_plan.display.figures import figure_files
+
+            contents |= figure_files(plan)
         write_files("--out", {target / name: content for name, content in contents.items()})
     except Exception:
         with suppress(InvalidInput):
             plan.save(unused_path(target / "plan.json"))
         raise
+    for name in set(RESULTS) - contents.keys():
+        (target / name).unlink(missing_ok=True)
+    return [target / name for name in contents]
 
 
 def check_target(target: str | Path, force: bool) -> Path:

@@ -46,13 +46,10 @@ def shape_placements(robot: SpaceRobot, configurations: Array) -> Placements:
     links = base @ poses.rotations[:, shapes.links]
     origins = configurations[:, None, :3] + turned(base, poses.origins[:, shapes.links])
     count = links.shape[:2]
-    return Placements(
-        np.concatenate(
-            [
-                (links @ shapes.rotations).reshape(*count, 9),
-                origins + turned(links, shapes.positions),
-                np.broadcast_to(shapes.sizes, (*count, 3)),
-            ],
-            axis=2,
-        )
-    )
+    parts = [
+        (links @ shapes.rotations).reshape(*count, 9),
+        origins + turned(links, shapes.positions),
+        np.broadcast_to(shapes.sizes, (*count, 3)),
+    ]
+    frames = np.empty((*count, 15))  # in row-major order: kernels are compiled for each order
+    return Placements(np.concatenate(parts, axis=2, out=frames))

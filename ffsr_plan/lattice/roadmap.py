@@ -314,4 +314,5 @@ def rule_out(
     from ffsr_plan.lattice.refused_neighbours_kernel import refuse_near
 
     met = (1.0 - t) * tails[edge[0]] + t * heads[edge[1]]
-    refuse_near(status, tails, heads, t, met, depth)
+    own = np.array(tails), np.array(heads)  # not read-only: a kernel is compiled for each kind
+    refuse_near(status, *own, t, met, depth)

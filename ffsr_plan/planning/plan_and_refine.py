@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 import warnings
 from dataclasses import replace
 from functools import partial
@@ -13,6 +12,7 @@ import numpy as np
 
 from ffsr_plan.core.checks import number, one_of, truth, whole_number
 from ffsr_plan.core.errors import AttitudeOutOfReach, GoalPoseIgnored, InvalidInput
+from ffsr_plan.core.kernels.compiling_time import Stopwatch
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.planning.certified_plan import Plan
@@ -73,12 +73,12 @@ def plan(
         PlanningError: no path was found in time.
         WorkerDied: a worker process ended without a result.
     """
-    begin = time.perf_counter()
+    watch = Stopwatch()
     chosen = _planner_for(problem, planner)
     rng, seed_number = _generator(seed)
     request = _request(chosen, refine, colonies, workers, time_limit, on_cycle)
     check_colonies(problem, request.colonies)
-    certified = partial(_certified, problem, chosen, seed_number, begin)
+    certified = partial(_certified, problem, chosen, seed_number, watch)
     try:
         with Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE))) as interruption:
             solution = chosen.solve(problem, rng, interruption.received_by(request))
@@ -168,14 +168,14 @@ def _planner_for(problem: Problem, planner: Planner | str | None) -> Planner:
 
 
 def _certified(
-    problem: Problem, planner: Planner, seed: int | None, begin: float, solution: Solution
+    problem: Problem, planner: Planner, seed: int | None, watch: Stopwatch, solution: Solution
 ) -> Plan:
-    """The plan of a solution; `begin` is when it was asked for, by `time.perf_counter`."""
+    """The plan of a solution; `watch` was started when it was asked for."""
     return Plan(
         problem=problem,
         planner=planner,
         seed=seed,
-        seconds=time.perf_counter() - begin,
+        seconds=watch.computing,
         **solution._asdict(),
     )
 

@@ -46,7 +46,7 @@ class PlanData:
         trails: the edges that ants walked, with ants and pheromone.
         certificate: edges proven, Coal queries spent, proven clearance along the whole motion.
         interrupted: whether Ctrl-C or the time limit ended the search early.
-        seconds: computing time [s].
+        seconds: computing time [s], without that for compiling kernels at their first use.
     """
 
     problem: Problem

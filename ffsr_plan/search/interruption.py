@@ -10,9 +10,10 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType, TracebackType
+from typing import TYPE_CHECKING
 
-from ffsr_plan.core.errors import PlanningError
-from ffsr_plan.search.records import SearchRequest
+if TYPE_CHECKING:
+    from ffsr_plan.search.records import SearchRequest
 
 RETURN, RAISE = "return", "raise"
 """What `plan` does at Ctrl-C during the search: return the best plan so far, or raise."""
@@ -98,6 +99,8 @@ class Interruption:
             signal.signal(signal.SIGINT, self._handler)
         if not self.pressed:
             return
+        from ffsr_plan.core.errors import PlanningError  # with numpy, which a command loads later
+
         if isinstance(error, PlanningError) or (error is None and not self._returns):
             raise KeyboardInterrupt from error  # there is no plan to return, or it is not asked for
         if error is None:

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from ffsr_plan.core.errors import WorkerDied
+from ffsr_plan.core.kernels import announcement
+from ffsr_plan.core.kernels.compiling_time import Stopwatch, add_compiled
 from ffsr_plan.search.records import SearchMonitor, SearchRequest
 
 Job = TypeVar("Job")
@@ -59,10 +61,10 @@ def run_on_workers(
 
     workers = min(request.workers, len(rngs))
     shares = [list(range(w, len(rngs), workers)) for w in range(workers)]
-    stop = get_context("loky").Event()
-    executors = [
-        ProcessPoolExecutor(1, initializer=_start, initargs=(stop, os.getpid())) for _ in shares
-    ]
+    stop, token = get_context("loky").Event(), get_context("loky").Lock()
+    announcement.share(token)
+    setting = (stop, token, os.getpid())
+    executors = [ProcessPoolExecutor(1, initializer=_start, initargs=setting) for _ in shares]
     try:
         with _ctrl_c_blocked():
             futures = [
@@ -74,11 +76,15 @@ def run_on_workers(
             if request.stop_requested():
                 stop.set()
         outcomes: dict[int, Outcome] = {}
+        compiling = 0.0
         for worker, (share, future) in enumerate(zip(shares, futures, strict=True)):
             try:
-                outcomes |= zip(share, future.result(), strict=False)  # fewer after Ctrl-C
+                own, seconds = future.result()
             except TerminatedWorkerError as error:
                 raise WorkerDied(worker, share, _exit_status(error)) from None
+            outcomes |= zip(share, own, strict=False)  # fewer after Ctrl-C
+            compiling = max(compiling, seconds)
+        add_compiled(compiling)
     finally:
         _end(executors)
     return [outcomes[k] for k in sorted(outcomes)]
@@ -108,17 +114,20 @@ def _end(executors: list[ProcessPoolExecutor]) -> None:
         raise interrupt
 
 
-def _start(stop: Any, caller: int) -> None:  # noqa: ANN401 - loky's event has no public type
+def _start(stop: Any, token: announcement.Token, caller: int) -> None:  # noqa: ANN401 - of loky
     global _stop_event, _caller
+    announcement.share(token)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _stop_event, _caller = stop, caller
 
 
 def _run_share(
     run: Run[Job, Outcome], job: Job, rngs: list[np.random.Generator], time_limit: float
-) -> list[Outcome]:
-    deadline = time.monotonic() + time_limit
-    return run(job, rngs, SearchMonitor(None, deadline, _stop_requested))
+) -> tuple[list[Outcome], float]:
+    """The outcomes, and the time that was spent compiling [s]."""
+    deadline, watch = time.monotonic() + time_limit, Stopwatch()
+    outcomes = run(job, rngs, SearchMonitor(None, deadline, _stop_requested))
+    return outcomes, watch.compiling
 
 
 def _stop_requested() -> bool:

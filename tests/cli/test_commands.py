@@ -5,7 +5,8 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from ffsr_plan.cli import RESULTS, app
+from ffsr_plan.cli import app
+from ffsr_plan.cli.result_files import RESULTS
 
 QUICK = """
 title = "quick"

@@ -1,7 +1,10 @@
 """The public API: names, documented fields, exported types, short representations."""
 
+import ast
 import dataclasses
 import inspect
+import subprocess
+import sys
 import typing
 
 import pytest
@@ -23,6 +26,24 @@ def fields_of(record):
 
 def test_dir_lists_public_names_only():
     assert set(dir(fp)) == {*fp.__all__, "__version__"}
+
+
+def test_type_checkers_see_the_names_that_are_loaded():
+    source = ast.parse(inspect.getsource(fp))
+    (typed,) = (node for node in source.body if isinstance(node, ast.If))
+    seen = {each.name: node.module for node in typed.body for each in node.names}
+    homes = {name: f"ffsr_plan.{module}" for name, module in fp._HOME.items()}
+    modules = {name: f"ffsr_plan.{m}".rpartition(".")[0] for name, m in fp._MODULES.items()}
+    assert seen == homes | modules
+    assert set(seen) == set(fp.__all__)
+
+
+@pytest.mark.parametrize("program", ["import ffsr_plan", "import ffsr_plan.cli"])
+def test_an_import_alone_loads_no_library_that_takes_long(program):
+    heavy = {"numpy", "pinocchio", "coal", "numba", "matplotlib", "scipy"}
+    check = f"import sys; {program}; print(*sorted({heavy} & set(sys.modules)))"
+    run = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True)
+    assert (run.stdout, run.stderr) == ("\n", "")
 
 
 @pytest.mark.parametrize("name", RECORDS)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache, cached_property, update_wrapper
-from threading import Timer
+from functools import cached_property, update_wrapper
+from threading import Lock, Timer
 from typing import Any, Literal, TypeVar, cast
 
+from ffsr_plan.core.kernels import announcement
+from ffsr_plan.core.kernels.compiling_time import count_begin, count_end, is_own
 from ffsr_plan.core.kernels.kernel_cache import keep_on_disk
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -17,6 +19,7 @@ _NOT_KEPT = (
     "compiling numerical kernels (some ten seconds in all), at every start: the cache directory "
     "cannot be written; NUMBA_CACHE_DIR can name another one"
 )
+_installing, _listening = Lock(), False
 
 
 class Kernel:
@@ -45,7 +48,7 @@ class Kernel:
 
         inline = self.targetoptions["inline"]
         dispatcher = njit(nogil=True, inline=inline)(self.py_func)
-        _install_notice(keep_on_disk(dispatcher))
+        _listen_once(keep_on_disk(dispatcher))
         return dispatcher
 
     @property
@@ -80,30 +83,35 @@ def inlined_kernel(function: _Function) -> _Function:
     return cast("_Function", Kernel(function, "always"))
 
 
-@cache
-def _install_notice(kept: bool) -> None:
-    """Write one notice to standard error when a kernel of this package starts to compile.
+def _listen_once(kept: bool) -> None:
+    """Announce and time the compilation of this package's kernels.
 
     Numba reports compilations as events; loading machine code from disk is none.
+
+    Args:
+        kept: whether the machine code is, as the announcement says.
     """
+    global _listening
+    with _installing:
+        if _listening:
+            return
+        _listening = True
     from numba.core import event
 
     notice = _NOTICE if kept else _NOT_KEPT
 
-    class Notice(event.Listener):
-        def __init__(self) -> None:
-            self.shown = False
-
+    class Listener(event.Listener):
         def on_start(self, event: Any) -> None:  # noqa: ANN401
-            module = event.data["dispatcher"].py_func.__module__
-            if not self.shown and module.startswith("ffsr_plan."):
-                self.shown = True
-                print(f"ffsr-plan: {notice}", file=sys.stderr, flush=True)
+            if is_own(event.data["dispatcher"]):
+                count_begin()
+                if announcement.is_due():
+                    print(f"ffsr-plan: {notice}", file=sys.stderr, flush=True)
 
         def on_end(self, event: Any) -> None:  # noqa: ANN401
-            pass
+            if is_own(event.data["dispatcher"]):
+                count_end()
 
-    event.register("numba:compile", Notice())  # type: ignore[no-untyped-call]
+    event.register("numba:compile", Listener())  # type: ignore[no-untyped-call]
 
 
 @contextmanager

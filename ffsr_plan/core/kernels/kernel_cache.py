@@ -72,6 +72,16 @@ def folder() -> Path:
     return platformdirs.user_cache_path("ffsr-plan", appauthor=False) / "kernels"
 
 
+def can_be_kept() -> bool:
+    """Whether machine code can be written to the folder, which is made if need be."""
+    try:
+        place = folder()
+        place.mkdir(parents=True, exist_ok=True)
+    except (OSError, RuntimeError):  # a RuntimeError if the user has no home directory
+        return False
+    return os.access(place, os.W_OK | os.X_OK)
+
+
 class _Locator:
     """Numba's interface for the place of a function's code."""
 

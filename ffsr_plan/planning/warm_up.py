@@ -1,0 +1,83 @@
+"""`warm_up`: all kernels compiled before they are needed, on scenes that take next to no time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.kernels.compiling_time import Stopwatch
+from ffsr_plan.planning.plan_and_refine import plan
+from ffsr_plan.plans.planner_registry import Planner
+from ffsr_plan.problem.lattice_settings import Axis, Lattice
+from ffsr_plan.problem.posture_axes import PostureAxis
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.robots.loading import load_robot
+from ffsr_plan.scene.scene import Scene
+from ffsr_plan.search.ants.ant_system import AntSystem
+from ffsr_plan.search.ants.max_min import MaxMinAntSystem
+from ffsr_plan.search.optimum_planner import LatticeOptimum
+from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
+
+_MANY = 20_001  # spheres whose tree a kernel builds
+
+
+def warm_up(on_progress: Callable[[float], object] | None = None) -> int:
+    """Compile the kernels of all planners and of the verification, and keep the machine code.
+
+    Otherwise each kernel is compiled when it is first called. That takes some ten seconds in all,
+    once after an installation; an image of a container holds the machine code after this call.
+    Where all is compiled, it is loaded, which takes a few seconds.
+
+    Args:
+        on_progress: called with the share that is done, from 0 to 1.
+
+    Returns:
+        The number of kernels that were compiled, each counted once for each signature.
+
+    Raises:
+        InvalidInput: `on_progress` is not a function.
+    """
+    if on_progress is not None and not callable(on_progress):
+        raise InvalidInput("on_progress", on_progress, "a function, or None")
+    watch, cases = Stopwatch(), list(_cases())
+    for done, (problem, planner) in enumerate(cases):
+        plan(problem, planner, on_interrupt="raise").verify(1)
+        if on_progress is not None:
+            on_progress((done + 1) / len(cases))
+    last = cases[-1][0]
+    ObstacleQuery(last.robot, last.scene).touching(last.start)  # for messages on contacts
+    return watch.kernels
+
+
+def _cases() -> Iterator[tuple[Problem, Planner]]:
+    """Small problems, and planners that between them call every kernel."""
+    few, many = _hurdle(16), _hurdle(_MANY)
+    folding = PostureAxis({"left_2": 1.0}, half_count=1, spacing=0.2)
+    yield _across("point", few), MaxMinAntSystem(ants=2, cycles=2)
+    yield _across("point", many), AntSystem(ants=2, cycles=2)
+    yield _across("satellite_ur5", few), LatticeOptimum()
+    yield (
+        _across("planar_dual_arm", few, folding),
+        PostureAnnealing(ants=2, cycles=2, annealing_shifts=20),
+    )
+
+
+def _hurdle(count: int) -> Scene:
+    """Spheres in the middle of the way, between two layers: edges are refused there."""
+    return Scene(
+        [[5.5, 0.4 * k / count, 0.0] for k in range(-count // 2, count // 2)], [0.2] * count
+    )
+
+
+def _across(name: str, hurdle: Scene, *postures: PostureAxis) -> Problem:
+    """A robot that has to go around a hurdle."""
+    robot = load_robot(name)
+    return Problem(
+        robot,
+        hurdle,
+        start=robot.neutral(),
+        goal=robot.configuration(position=(10.0, 0.0, 0.0)),
+        lattice=Lattice(divisions=10, lateral=Axis(half_count=6, spacing=1.0), postures=postures),
+        delta=0.1,
+    )
