@@ -46,14 +46,25 @@ class Kernel:
         """The numba dispatcher, made at the first use."""
         from numba import njit
 
-        inline = self.targetoptions["inline"]
-        dispatcher = njit(nogil=True, inline=inline)(self.py_func)
+        dispatcher = njit(nogil=True, no_cfunc_wrapper=True)(self.py_func)
         _listen_once(keep_on_disk(dispatcher))
         return dispatcher
 
+    @cached_property
+    def inner_dispatcher(self) -> Any:  # noqa: ANN401 - its type depends on numba's version
+        """The numba dispatcher for calls by kernels, made at the first use.
+
+        It makes no function that Python could call, which takes longer to compile than the kernel
+        itself where arguments hold many arrays. Its machine code becomes part of the caller's.
+        """
+        from numba import njit
+
+        options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        return njit(nogil=True, inline=self.targetoptions["inline"], **options)(self.py_func)
+
     @property
     def _numba_type_(self) -> object:
-        return self.dispatcher._numba_type_
+        return self.inner_dispatcher._numba_type_
 
     def __call__(self, *arguments: object) -> Any:  # noqa: ANN401, D102 - as the function
         return self.dispatcher(*arguments)

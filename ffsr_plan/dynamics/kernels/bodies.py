@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.robots.kinematics import Bodies
 
 _EPS = np.finfo(np.float64).eps
@@ -61,7 +61,7 @@ def link_states(count: int) -> LinkStates:
     return states
 
 
-@inlined_kernel
+@kernel
 def add_cross(result: Array, row: int, a: Array, b: Array) -> None:
     """Add a x b, (3,) each, to a row of `result`."""
     result[row, 0] += a[1] * b[2] - a[2] * b[1]
@@ -140,7 +140,7 @@ def weigh_links(bodies: Bodies, states: LinkStates) -> None:
         _add_link(bodies, j, states)
 
 
-@inlined_kernel
+@kernel
 def _add_link(bodies: Bodies, j: int, states: LinkStates) -> None:
     """Add a link's share to inertia and momentum."""
     rotation, own, inertia = states.rotations[j], bodies.inertias[j], states.inertia
@@ -219,13 +219,13 @@ def rate_rounding(bodies: Bodies, states: LinkStates, rate: Array, least: float)
     return (len(bodies.masses) + 8) * _EPS * (inertia * speed + momentum) / least
 
 
-@inlined_kernel
+@kernel
 def _sum(vector: Array) -> float:
     """Sum of the absolute components of a vector (3,), a bound on its length."""
     return abs(vector[0]) + abs(vector[1]) + abs(vector[2])
 
 
-@inlined_kernel
+@kernel
 def norm_of(vector: Array) -> float:
     """Length of a vector (3,)."""
     return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import LinkStates, norm_of
 from ffsr_plan.robots.kinematics import Bodies
 
@@ -54,7 +54,7 @@ def excursions(count: int) -> Excursions:
     )
 
 
-@inlined_kernel
+@kernel
 def _chord(turn: float) -> float:
     """Norm of exp(a) - 1 for a real rotation by at most `turn` [rad]."""
     return 2.0 * math.sin(0.5 * min(turn, math.pi))

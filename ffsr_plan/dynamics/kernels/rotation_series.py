@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 
 POINTS = 13
 """Values of omega over a substep; odd, so that one is in the middle."""
@@ -16,7 +16,7 @@ TERMS = 2 * POINTS + 4
 """Terms of the power series of a rotation."""
 
 
-@inlined_kernel
+@kernel
 def _add_product(result: Array, p: Array, x: float, y: float, z: float) -> None:
     """Add the quaternion product p (x, y, z, 0), (4,), to `result`."""
     result[0] += p[3] * x + p[1] * z - p[2] * y
@@ -55,7 +55,7 @@ def rotation_series(powers: Array, terms: Array, sizes: Array) -> float:
     return max(math.exp(exponent) - total, 0.0)
 
 
-@inlined_kernel
+@kernel
 def end_to_end(terms: Array, turn: Array, back: Array) -> None:
     """Rotations (4,) over a substep and from its middle to its start, from the series."""
     ahead, turn[:], back[:] = np.zeros(4), 0.0, 0.0
@@ -70,13 +70,13 @@ def end_to_end(terms: Array, turn: Array, back: Array) -> None:
     inverse(back)
 
 
-@inlined_kernel
+@kernel
 def inverse(q: Array) -> None:
     """Invert a rotation (4,)."""
     q[0], q[1], q[2] = -q[0], -q[1], -q[2]
 
 
-@inlined_kernel
+@kernel
 def normalise(q: Array) -> None:
     """Divide a quaternion (4,) by its norm."""
     norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
@@ -84,7 +84,7 @@ def normalise(q: Array) -> None:
         q[a] /= norm
 
 
-@inlined_kernel
+@kernel
 def multiply(result: Array, p: Array, q: Array) -> None:
     """The quaternion product p q, all (4,); `result` is neither of them."""
     for a in range(4):

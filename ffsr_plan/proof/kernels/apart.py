@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.proof.kernels.course import Course, memory_for, place_shapes, travel_of_shapes
 from ffsr_plan.robots.shape_arrays import BOX
 
@@ -21,7 +21,7 @@ _PARALLEL = 1e-6  # sine of the angle between edges below which their cross prod
 _MARGIN = 1e-8  # [m]
 
 
-@inlined_kernel
+@kernel
 def _half(kind: int, frame: Array, axis: int) -> float:
     """Half of a side of a shape's box without its rounding [m]."""
     if kind == BOX:

@@ -14,7 +14,7 @@ from ffsr_plan.collision.nearest_sphere_kernels import (
     nearest_sphere,
 )
 from ffsr_plan.core.arrays import Array, Flags, IntArray
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import LinkStates, move_links, weigh_links
 from ffsr_plan.dynamics.kernels.rotation_series import Partial, multiply, normalise, rotation_at
 from ffsr_plan.proof.kernels.travel import (
@@ -179,7 +179,7 @@ def place_shapes(course: Course, layer: int, time: float, memory: Memory) -> Non
         _place_shape(shapes, i, states, turned, position, memory.frames[i])
 
 
-@inlined_kernel
+@kernel
 def _place_shape(
     shapes: Primitives, i: int, states: LinkStates, turned: Array, position: Array, frame: Array
 ) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.proof.kernels.course import Course, Memory, measure, memory_for, travel_of_shapes
 
 OPEN, PROVEN, TOUCHED = 0, 1, 2
@@ -39,7 +39,7 @@ class Decisions(NamedTuple):
     counts: IntArray
 
 
-@inlined_kernel
+@kernel
 def _sum_above(first: Array, last: Array, ways: Array, more: float) -> float:
     """Least value over the shapes of both distances less the travel and `more`."""
     least = np.inf

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import LinkStates, norm_of
 from ffsr_plan.robots.kinematics import Bodies
 
@@ -45,7 +45,7 @@ def link_bounds(count: int) -> LinkBounds:
     )
 
 
-@inlined_kernel
+@kernel
 def _longer(x: float, y: float, z: float, u: float, v: float, w: float) -> float:
     """The larger norm of two vectors."""
     return math.sqrt(max(x * x + y * y + z * z, u * u + v * v + w * w))
@@ -98,7 +98,7 @@ def bound_links(
         )
 
 
-@inlined_kernel
+@kernel
 def _across(bodies: Bodies, j: int, states: LinkStates) -> float:
     """|w_p x s_j| at the middle, with the parent p and the axis s_j of link j."""
     turned, axis, w = states.rotations[j], bodies.axes[j], states.angular[bodies.parents[j]]

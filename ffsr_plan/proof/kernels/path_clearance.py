@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.proof.kernels.course import Course, Memory, measure, memory_for, travel_of_shapes
 
 _MOST_PARTS = 1024  # of an edge; with more the bound stays what it is by then
@@ -100,7 +100,7 @@ def _refined(
         count += 1
 
 
-@inlined_kernel
+@kernel
 def _bound_part(
     course: Course,
     layer: int,

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
+from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import (
     LinkStates,
     base_rate,
@@ -251,7 +251,7 @@ def bound_travel(
         _bound_in_world(point, half, base, turning, scratch, row, k, out)
 
 
-@inlined_kernel
+@kernel
 def _bound_in_world(
     point: Point,
     half: float,

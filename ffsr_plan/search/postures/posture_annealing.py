@@ -171,8 +171,9 @@ class _Proofs:
         m, before = len(path) - 1, proof.prover.queries
         least = proof.prover.least_clearance(np.zeros((m + 1, 3)), proof.clearances)
         queries = self._queries + proof.prover.queries - before
+        nodes = m + 1 if np.isfinite(proof.clearances).all() else 0  # none in an empty scene
         certificate = Certificate(
-            m, self._refused, m + 1, queries - m - 1, least, problem.robot.unchecked_links
+            m, self._refused, nodes, queries - nodes, least, problem.robot.unchecked_links
         )
         solution = _solution(self._lattice, path, proof, certificate, result, on_lattice)
         if not proof.holds:

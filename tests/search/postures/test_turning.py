@@ -373,6 +373,13 @@ def test_an_axis_towards_a_posture_ends_in_it():
     assert not others.any()
 
 
+def test_in_an_empty_scene_no_distance_to_an_obstacle_is_counted():
+    certificate = quick().certificate
+    assert certificate.node_queries == 0
+    assert certificate.edge_queries >= 0
+    assert certificate.edges_free == COARSE.divisions
+
+
 def test_too_many_postures_are_refused_before_memory_runs_out():
     axes = [fp.PostureAxis({name: 1.0}, 40, 0.05) for name in ("left_1", "left_2", "right_1")]
     with pytest.raises(fp.InvalidInput, match="lattice postures"):
