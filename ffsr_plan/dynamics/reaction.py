@@ -9,17 +9,17 @@ has a bound; docs/proof.md, section 9, derives it.
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, Records, records
 from ffsr_plan.core.errors import IntegrationError
 from ffsr_plan.robots.robot import SpaceRobot
 
 if TYPE_CHECKING:
-    from ffsr_plan.dynamics.kernels.reaction import Points
+    from ffsr_plan.dynamics.kernels.reaction import Memory
 
 TOLERANCE = 1e-11
 """Error [rad] over a segment that is allowed for, without that of rounding."""
@@ -58,26 +58,18 @@ class Reaction:
             IntegrationError: a segment needs more than 4096 substeps.
         """
         from ffsr_plan.dynamics.kernels import reaction as kernels
-        from ffsr_plan.dynamics.kernels.rotation_series import Partial
+        from ffsr_plan.dynamics.kernels.rotation_series import TERMS, Partial
 
-        begin, steps = np.ascontiguousarray(begin), np.ascontiguousarray(steps)
-        self._substeps = kernels.cut(robot.bodies, begin, steps, tolerance)
-        given_up = self._substeps.segments[self._substeps.lengths == 0.0]
-        if len(given_up):
-            largest = float(np.max(np.abs(steps[given_up[0]])))
-            raise IntegrationError(
-                f"the base reaction does not converge (joint step {largest:g} in one edge)"
-            )
-        parts = kernels.expand(robot.bodies, begin, steps, self._substeps, _points(), inside)
-        segments = self._substeps.segments
-        self.increments, middles, self.errors = kernels.chained(segments, parts, len(steps))
-        self.partial = Partial(
-            np.searchsorted(segments, np.arange(len(steps) + 1)),
-            self._substeps.begins,
-            self._substeps.lengths,
-            middles,
-            parts.series,
-        )
+        begin, steps = _own(begin), _own(steps)  # kernels are compiled for writable arrays
+        memory = kernels.memory_for(robot.nd + 1)
+        substeps = _cut(robot, begin, steps, tolerance, memory)
+        series = np.empty((len(substeps) if inside else 0, TERMS, 4))
+        kernels.expand(robot.bodies, begin, steps, _points(), memory, substeps, series)
+        self.increments: Array = np.tile(rotations.IDENTITY, (len(steps), 1))
+        self.errors: Array = np.zeros(len(steps))
+        kernels.chain(substeps, memory, self.increments, self.errors)
+        first = np.searchsorted(substeps.segment, np.arange(len(steps) + 1))
+        self.partial = Partial(first, substeps, series)
 
     @classmethod
     def along(cls, robot: SpaceRobot, joint_values: Array) -> Reaction:
@@ -102,7 +94,9 @@ class Reaction:
         """
         from ffsr_plan.dynamics.kernels.rotation_series import rotations_at
 
-        found: Array = rotations_at(self.partial, edge, time)
+        edges, times = np.array(edge, dtype=np.int64), _own(time)
+        found: Array = np.empty((len(times), 4))
+        rotations_at(self.partial, edges, times, np.empty(4), found)
         return found
 
     def attitudes(self, start: Array) -> Array:
@@ -120,8 +114,40 @@ class Reaction:
         return np.array(attitudes)
 
 
+def _own(array: Array) -> Array:
+    """A contiguous copy that can be written to."""
+    return np.array(array, dtype=np.float64, order="C")
+
+
+def _cut(
+    robot: SpaceRobot, begin: Array, steps: Array, tolerance: float, memory: Memory
+) -> Records:
+    """Substeps of all segments, cut but not integrated."""
+    from ffsr_plan.dynamics.kernels.reaction import cut
+    from ffsr_plan.dynamics.kernels.rotation_series import SUBSTEP
+
+    substeps, segment, count = records(SUBSTEP, 2 * len(steps) + 64), 0, 0
+    while True:
+        segment, count = cut(
+            robot.bodies, begin, steps, tolerance, memory, segment, count, substeps
+        )
+        if segment == len(steps):
+            break
+        more = records(SUBSTEP, 2 * len(substeps))
+        more[: len(substeps)] = substeps
+        substeps = more
+    substeps = cast("Records", substeps[:count].copy())
+    given_up = substeps.segment[substeps.length == 0.0]
+    if len(given_up):
+        largest = float(np.max(np.abs(steps[given_up[0]])))
+        raise IntegrationError(
+            f"the base reaction does not converge (joint step {largest:g} in one edge)"
+        )
+    return substeps
+
+
 @cache
-def _points() -> Points:
+def _points() -> Records:
     from ffsr_plan.dynamics.kernels.reaction import gauss_points
 
     return gauss_points()

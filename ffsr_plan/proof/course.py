@@ -25,8 +25,7 @@ def course_of(motion: Motion, scene: Scene, travel: EdgeTravel) -> Course:
         scene: at least one obstacle.
         travel: travel bounds along the motion.
     """
-    from ffsr_plan.proof.kernels.course import Attitudes, Course
-    from ffsr_plan.proof.kernels.travel import Travel
+    from ffsr_plan.proof.kernels.course import Course
 
     robot, reacts = motion.robot, motion.mode.attitude_reacts
     whole, straight = travel.over(0.0, 1.0)
@@ -39,18 +38,15 @@ def course_of(motion: Motion, scene: Scene, travel: EdgeTravel) -> Course:
     each = reacts and not motion.joints_are_straight
     return Course(
         robot.bodies,
-        robot.primitives,
+        travel.shapes,
         travel.points,
         scene.tree,
         travel.base,
-        Attitudes(
-            np.ascontiguousarray(motion.attitudes[: motion.edges if each else 1]),
-            np.zeros(3) if reacts else np.array(motion.turn),
-            reaction.partial,
-        ),
-        np.ascontiguousarray(positions),
-        motion.joint_values,
-        Travel(*whole[:5]),
+        np.array(motion.attitudes[: motion.edges if each else 1]),
+        reaction.partial,
+        np.array(positions),
+        np.array(motion.joint_values),
+        whole.points,
         straight,
     )
 
@@ -62,20 +58,21 @@ def course_in_base(motion: Motion, travel: EdgeTravel) -> Course:
         motion: the motion.
         travel: travel bounds along it.
     """
-    from ffsr_plan.proof.kernels.course import Attitudes, Course
-    from ffsr_plan.proof.kernels.travel import BaseMotion, Travel
+    from ffsr_plan.proof.kernels.course import Course
+    from ffsr_plan.proof.kernels.travel import BaseMotion
 
     whole, straight = travel.over(0.0, 1.0, in_base=True)
     return Course(
         motion.robot.bodies,
-        motion.robot.primitives,
+        travel.shapes,
         travel.points,
         Scene().tree,
-        BaseMotion(False, False, np.zeros(3), 0.0),
-        Attitudes(IDENTITY[None].copy(), np.zeros(3), _still(motion).partial),
+        BaseMotion(False, False, (0.0, 0.0, 0.0), 0.0),
+        np.array(IDENTITY[None]),
+        _still(motion).partial,
         np.zeros_like(motion.positions),
-        motion.joint_values,
-        Travel(*whole[:5]),
+        np.array(motion.joint_values),
+        whole.points,
         straight,
     )
 

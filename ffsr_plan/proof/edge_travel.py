@@ -23,7 +23,8 @@ class EdgeTravel:
 
     Attributes:
         speeds: (m,) bound on the speed of any shape on each edge relative to the base origin [m].
-        points: points whose hulls contain the shapes.
+        shapes: (g,) records of `SHAPE`.
+        points: (P,) records of `HULL_POINT`, whose hulls contain the shapes.
         base: what the base does.
         attitude_error: length that an error of the attitude can add over any interval [m]; not
             part of `speeds`.
@@ -38,18 +39,18 @@ class EdgeTravel:
         from ffsr_plan.proof.kernels.travel import BaseMotion
 
         self._motion, self._bound = motion, TravelBound(motion.robot)
-        self.points = self._bound.points
+        self.shapes, self.points = self._bound.shapes, self._bound.points
         reacts = motion.mode.attitude_reacts
         self.base = BaseMotion(
             reacts,
             motion.mode.floats,
-            np.zeros(3) if reacts else np.array(motion.turn),
+            (0.0, 0.0, 0.0) if reacts else tuple(np.asarray(motion.turn).tolist()),
             float(motion.reaction.errors.sum()) if reacts else 0.0,
         )
         self._known: dict[tuple[float, float, bool], tuple[IntervalTravel, Flags]] = {}
         whole = self.over(0.0, 1.0)[0]
         self.speeds = _largest_speed(whole)
-        self.attitude_error = float(np.max(whole.attitude_error, initial=0.0))
+        self.attitude_error = float(np.max(whole.points.attitude_error, initial=0.0))
 
     @cached_property
     def speeds_in_base(self) -> Array:
@@ -104,14 +105,14 @@ class EdgeTravel:
         else:
             quats = motion.attitudes_at((np.arange(m) + time) / m)
             travel = self._bound.in_world(values, rates, lengths, self.base, quats)
-        largest = lengths * np.max(travel.speed, axis=1, initial=0.0)
-        curvature = np.max(travel.curvature, axis=1, initial=0.0)
+        largest = lengths * np.max(travel.points.speed, axis=1, initial=0.0)
+        curvature = np.max(travel.points.curvature, axis=1, initial=0.0)
         self._known[begin, end, in_base] = travel, curvature <= _STRAIGHTNESS * largest
         return self._known[begin, end, in_base]
 
 
 def _largest_speed(whole: IntervalTravel) -> Array:
     """(m,) bound on the speed of any point over whole edges [m]."""
-    from_middle = np.linalg.norm(whole.velocity, axis=-1) + 2.0 * whole.curvature
-    largest: Array = np.max(np.minimum(from_middle, whole.speed), axis=1, initial=0.0)
+    from_middle = np.linalg.norm(whole.points.velocity, axis=-1) + 2.0 * whole.points.curvature
+    largest: Array = np.max(np.minimum(from_middle, whole.points.speed), axis=1, initial=0.0)
     return largest

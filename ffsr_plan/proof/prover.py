@@ -15,7 +15,7 @@ import numpy as np
 from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_collision
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, records
 from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.course import course_in_base, course_of
@@ -32,7 +32,7 @@ from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from ffsr_plan.proof.kernels.course import Course
+    from ffsr_plan.proof.kernels.course import Course, Memory
 
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
 _ITERATION_ERROR = 1e-7  # [m] for distances that Coal iterates to 1e-8
@@ -181,19 +181,25 @@ class Prover:
             return [Verdict(True, np.inf, 0.0, 0)] * len(layers)
         if not len(layers):
             return []
-        from ffsr_plan.proof.kernels.edge_proof import PROVEN, TOUCHED, prove
+        from ffsr_plan.proof.kernels import edge_proof
 
-        found = prove(
-            self._course, self.speeds, layers, tails, heads, ends, self.rounding, self.tolerance
-        )
-        verdicts = []
-        columns = (column.tolist() for column in found)
-        for k, (state, least, time, count) in enumerate(zip(*columns, strict=True)):
-            if state == PROVEN:
+        edges, course = records(edge_proof.EDGE, len(layers)), self._course
+        edges.layer, edges.tail, edges.head, edges.ends = layers, tails, heads, ends
+        edge_proof.prove(
+            course, self.speeds, edges, self.rounding, self.tolerance, self._memory,
+            edge_proof.intervals_for(course),
+        )  # fmt: skip
+        verdicts, columns = [], (edges.state, edges.least, edges.time, edges.count)
+        for k, (state, least, time, count) in enumerate(
+            zip(*(column.tolist() for column in columns), strict=True)
+        ):
+            if state == edge_proof.PROVEN:
                 verdicts.append(Verdict(True, least, time, count))
                 continue
             edge = self.obstacle_edge(int(layers[k]), tails[k], heads[k])
-            touched = edge.clearance(time) if state == TOUCHED and self._exact else np.inf
+            touched = (
+                edge.clearance(time) if state == edge_proof.TOUCHED and self._exact else np.inf
+            )
             if touched <= 0.0:
                 verdicts.append(Verdict(False, touched, time, count))
             else:
@@ -207,6 +213,13 @@ class Prover:
             return None
         return course_of(self._motion, self._scene, self._travel)
 
+    @cached_property
+    def _memory(self) -> Memory:
+        from ffsr_plan.proof.kernels.course import memory_for
+
+        assert self._course is not None
+        return memory_for(self._course)
+
     def least_clearance(self, offsets: Array, clearances: Array) -> float:
         """Proven lower bound on the clearance all along a path whose edges are free.
 
@@ -218,11 +231,11 @@ class Prover:
             The bound [m].
         """
         if self._course is not None and self._exact:
-            from ffsr_plan.proof.kernels.path_clearance import path_clearance
+            from ffsr_plan.proof.kernels.path_clearance import parts_for, path_clearance
 
             found = path_clearance(
-                self._course, self.speeds, np.ascontiguousarray(offsets), clearances,
-                self.rounding, _BOUND_PRECISION,
+                self._course, self.speeds, np.array(offsets), np.array(clearances), self.rounding,
+                _BOUND_PRECISION, self._memory, parts_for(self._course),
             )  # fmt: skip
             return max(float(found), 0.0)  # not negative, because the edges have been proven free
         bound = least = float(np.min(clearances))
@@ -291,13 +304,15 @@ class Prover:
         verdicts = [Verdict(True, np.inf, 0.0, 0)] * motion.edges
         if self._self.empty:
             return verdicts
-        from ffsr_plan.proof.kernels.apart import prove_apart
+        from ffsr_plan.proof.kernels.apart import known_for, prove_apart
+        from ffsr_plan.proof.kernels.course import memory_for
 
-        course = course_in_base(motion, self._travel)
-        proven = prove_apart(course, self._self.pairs, rounding)
+        course, pairs = course_in_base(motion, self._travel), self._self.pairs
+        proven, memory = np.zeros((motion.edges, len(pairs)), dtype=np.bool_), memory_for(course)
+        prove_apart(course, pairs, rounding, memory, known_for(course), proven)
         for layer in np.flatnonzero(~proven.all(axis=1)).tolist():
-            pairs = np.flatnonzero(~proven[layer])
-            edge = SelfCollisionEdge(self._self, motion, self._travel, layer, pairs, rounding)
+            open_pairs = np.flatnonzero(~proven[layer])
+            edge = SelfCollisionEdge(self._self, motion, self._travel, layer, open_pairs, rounding)
             ends = edge.clearance(0.0), edge.clearance(1.0)
             verdicts[layer] = certify(edge, ends, self.tolerance)
         return verdicts

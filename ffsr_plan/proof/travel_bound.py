@@ -6,36 +6,30 @@ The mathematics is in `kernels.travel`.
 from __future__ import annotations
 
 from itertools import product
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import coal
 import numpy as np
 import pinocchio as pin
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, Records, records
 from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.robots.robot import SpaceRobot
 
 if TYPE_CHECKING:
-    from ffsr_plan.proof.kernels.travel import BaseMotion, HullPoints
+    from ffsr_plan.proof.kernels.travel import BaseMotion
 
 
 class IntervalTravel(NamedTuple):
     """The travel bound over K intervals for any displacement of the base; P points of g shapes.
 
     Attributes:
-        velocity: (K, P, 3) at the middle relative to the base origin, world axes [m].
-        speed: (K, P) bound on the norm of that velocity over the interval [m].
-        curvature: (K, P) length that a change of velocity can add, A h^2 / 4 [m].
-        attitude_error: (K, P) length that the error of the attitude can add [m].
+        points: (K, P) records of `TRAVEL`.
         lengths: (K,) h, in units of edge time.
         first: (g,) index of the first point of each shape; a shape's points are consecutive.
     """
 
-    velocity: Array
-    speed: Array
-    curvature: Array
-    attitude_error: Array
+    points: Records
     lengths: Array
     first: IntArray
 
@@ -50,12 +44,13 @@ class IntervalTravel(NamedTuple):
         Returns:
             (..., g) bound of each shape [m].
         """
-        length = self.lengths[interval][..., None]
-        velocity = self.velocity[interval] + base_step[..., None, :]
-        straight = length * np.linalg.norm(velocity, axis=-1) + self.curvature[interval]
+        length: Array = self.lengths[interval][..., None]
+        points = cast("Records", self.points[interval])
+        velocity = points.velocity + base_step[..., None, :]
+        straight = length * np.linalg.norm(velocity, axis=-1) + points.curvature
         base_speed = np.linalg.norm(base_step, axis=-1)[..., None]
-        coarse = length * (base_speed + self.speed[interval])
-        return self._of_shapes(np.minimum(straight, coarse) + self.attitude_error[interval])
+        coarse = length * (base_speed + points.speed)
+        return self._of_shapes(np.minimum(straight, coarse) + points.attitude_error)
 
     def within(self, interval: int, length: float, offset: float, base_step: Array) -> Array:
         """T over a part of an interval that does not contain the middle.
@@ -71,11 +66,12 @@ class IntervalTravel(NamedTuple):
         Returns:
             (g,) bound of each shape [m].
         """
-        velocity = np.linalg.norm(self.velocity[interval] + base_step, axis=-1)
-        change = 4.0 / self.lengths[interval] ** 2 * self.curvature[interval]
-        coarse = np.linalg.norm(base_step) + self.speed[interval]
+        points: Records = self.points[interval]
+        velocity = np.linalg.norm(points.velocity + base_step, axis=-1)
+        change = 4.0 / self.lengths[interval] ** 2 * points.curvature
+        coarse = np.linalg.norm(base_step) + points.speed
         fastest = np.minimum(velocity + abs(offset) * change, coarse)
-        return self._of_shapes(length * fastest + self.attitude_error[interval])
+        return self._of_shapes(length * fastest + points.attitude_error)
 
     def _of_shapes(self, points: Array) -> Array:
         largest: Array = np.maximum.reduceat(points, self.first, axis=-1)
@@ -86,22 +82,29 @@ class TravelBound:
     """The travel bound of one robot.
 
     Attributes:
-        points: points whose hulls contain the shapes.
+        shapes: (g,) the collision shapes, records of `SHAPE`.
+        points: (P,) points whose hulls contain the shapes, records of `HULL_POINT`.
     """
 
     def __init__(self, robot: SpaceRobot) -> None:
-        from ffsr_plan.proof.kernels.travel import HullPoints
+        from ffsr_plan.proof.kernels.course import SHAPE
+        from ffsr_plan.proof.kernels.travel import HULL_POINT
 
-        self._bodies = robot.bodies
-        shapes = robot.collision_model.geometryObjects
-        points = [hull_points(shape) for shape in shapes]
-        counts = np.array([len(p) for p in points], dtype=np.int64)
-        carriers = np.array([shape.parentJoint - 1 for shape in shapes], dtype=np.int64)
-        self.points: HullPoints = HullPoints(
-            np.repeat(carriers, counts),
-            np.concatenate([np.zeros((0, 3)), *points]),
-            np.append(0, np.cumsum(counts)),
+        self._bodies, given = robot.bodies, robot.primitives
+        corners = [hull_points(shape) for shape in robot.collision_model.geometryObjects]
+        self.shapes: Records = records(SHAPE, len(corners))
+        self.shapes.kind, self.shapes.extent, self.shapes.link = (
+            given.kinds,
+            given.sizes,
+            given.links,
         )
+        self.shapes.rotation, self.shapes.position = given.rotations, given.positions
+        counts = np.array([len(each) for each in corners], dtype=np.int64)
+        self.shapes.end = np.cumsum(counts)
+        self.shapes.first = self.shapes.end - counts
+        self.points: Records = records(HULL_POINT, int(counts.sum()))
+        self.points.link = np.repeat(given.links, counts)
+        self.points.place = np.concatenate([np.zeros((0, 3)), *corners])
 
     def in_world(
         self, values: Array, rates: Array, lengths: Array, base: BaseMotion, quats: Array
@@ -115,10 +118,14 @@ class TravelBound:
             base: what the base does.
             quats: (K, 4) attitudes of the base at the middles (xyzw).
         """
-        from ffsr_plan.proof.kernels.travel import travels
+        from ffsr_plan.proof.kernels.travel import TRAVEL, scratch_for, travels
 
-        found = travels(self._bodies, self.points, values, rates, lengths, base, quats)
-        return IntervalTravel(*found, self.points.first[:-1])
+        found = records(TRAVEL, len(values), len(self.points))
+        travels(
+            self._bodies, self.points, np.array(values), np.array(rates), lengths, base,
+            np.array(quats), scratch_for(len(self._bodies)), found,
+        )  # fmt: skip
+        return IntervalTravel(found, lengths, self.shapes.first)
 
     def in_base(self, values: Array, rates: Array, lengths: Array) -> IntervalTravel:
         """The bound on travel relative to the base, for a base step of zero.
@@ -133,7 +140,7 @@ class TravelBound:
         """
         from ffsr_plan.proof.kernels.travel import BaseMotion
 
-        still = BaseMotion(False, False, np.zeros(3), 0.0)
+        still = BaseMotion(False, False, (0.0, 0.0, 0.0), 0.0)
         return self.in_world(values, rates, lengths, still, np.tile(IDENTITY, (len(values), 1)))
 
 

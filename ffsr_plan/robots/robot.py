@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, frozen
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, Records, content, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, unknown_name
@@ -19,7 +19,7 @@ from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
 from ffsr_plan.core.text_files import write_files
 from ffsr_plan.robots.collision_shapes import Containers, Replacement
-from ffsr_plan.robots.kinematics import Bodies, Components, Tree
+from ffsr_plan.robots.kinematics import Components, Tree
 from ffsr_plan.robots.shape_arrays import Primitives, primitives
 from ffsr_plan.robots.srdf import NO_POSTURE, named_postures
 from ffsr_plan.robots.urdf.inertias import Balanced
@@ -165,7 +165,7 @@ class SpaceRobot:
         return Tree(self.model)
 
     @cached_property
-    def bodies(self) -> Bodies:
+    def bodies(self) -> Records:
         """The links and their masses as arrays for compiled kernels."""
         return self.tree.bodies(self.model)
 

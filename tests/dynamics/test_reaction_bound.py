@@ -5,9 +5,16 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import records
 from ffsr_plan.dynamics.kernels import reaction as reaction_kernels
-from ffsr_plan.dynamics.kernels.bodies import base_rate, link_states, move_links, weigh_links
-from ffsr_plan.dynamics.kernels.rate_bound import excursions, excursions_of_links, rate_bound
+from ffsr_plan.dynamics.kernels.bodies import (
+    ROBOT_STATE,
+    base_rate,
+    link_states,
+    move_links,
+    weigh_links,
+)
+from ffsr_plan.dynamics.kernels.rate_bound import EXCURSION, excursions_of_links, rate_bound
 from ffsr_plan.dynamics.momentum import connections
 from ffsr_plan.dynamics.reaction import Reaction
 from tests.dynamics.test_reaction_error import two_bodies
@@ -15,21 +22,22 @@ from tests.helpers.urdf_builders import random_robot
 
 
 def states_at(robot, values, rates):
-    """States of the links, the base's rate and the least moment of inertia from below."""
-    states, rate = link_states(robot.nd + 1), np.empty(3)
-    move_links(robot.bodies, values, rates, states)
-    weigh_links(robot.bodies, states)
-    return states, rate, base_rate(states, rate)
+    """States of the links and of the robot, and the least moment of inertia from below."""
+    links, whole = link_states(robot.nd + 1), records(ROBOT_STATE, 1)
+    move_links(robot.bodies, values, rates, links)
+    weigh_links(robot.bodies, links, whole)
+    least = base_rate(whole)
+    return links, whole[0], least
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_the_compiled_rate_is_the_connection_times_joint_rates(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     values, rates = rng.uniform(-2.0, 2.0, (2, robot.nd))
-    states, rate, least = states_at(robot, values, rates)
+    _, whole, least = states_at(robot, values, rates)
     expected = connections(robot, values[None])[0] @ rates
-    assert np.allclose(rate, expected, rtol=0.0, atol=1e-12 * (1.0 + np.abs(expected).max()))
-    xx, yy, zz, xy, xz, yz = states.inertia
+    assert np.allclose(whole.rate, expected, rtol=0.0, atol=1e-12 * (1.0 + np.abs(expected).max()))
+    xx, yy, zz, xy, xz, yz = whole.inertia
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     smallest = np.linalg.eigvalsh(inertia)[0]
     assert smallest / np.sqrt(3.0) * (1 - 1e-9) <= least <= smallest * (1 + 1e-9)
@@ -41,26 +49,26 @@ def complex_rate(robot, values, rates):
     turned = np.tile(np.eye(3, dtype=complex), (n, 1, 1))
     origins, angular, linear = np.zeros((3, n, 3), dtype=complex)
     for j in range(1, n):
-        p, q, rate = bodies.parents[j], values[j - 1], rates[j - 1]
+        p, q, rate = bodies.parent[j], values[j - 1], rates[j - 1]
         local = bodies.fixed[j].astype(complex)
         if not bodies.prismatic[j]:
             local = local + np.sin(q) * bodies.sine[j] + (1.0 - np.cos(q)) * bodies.versine[j]
-        step = turned[p] @ (bodies.offsets[j] + q * bodies.slides[j])
+        step = turned[p] @ (bodies.offset[j] + q * bodies.slide[j])
         turned[j] = turned[p] @ local
-        along = turned[j] @ bodies.axes[j] * rate
+        along = turned[j] @ bodies.axis[j] * rate
         origins[j] = origins[p] + step
         linear[j] = linear[p] + np.cross(angular[p], step) + along * bodies.prismatic[j]
         angular[j] = angular[p] + along * (not bodies.prismatic[j])
-    levers = np.einsum("nij,nj->ni", turned, bodies.levers)
+    levers = np.einsum("nij,nj->ni", turned, bodies.lever)
     flows = linear + np.cross(angular, levers)
     arms = origins + levers
-    arms = arms - bodies.masses @ arms / bodies.masses.sum()
-    own = turned @ bodies.inertias @ np.swapaxes(turned, 1, 2)
+    arms = arms - bodies.mass @ arms / bodies.mass.sum()
+    own = turned @ bodies.inertia @ np.swapaxes(turned, 1, 2)
     squares = np.einsum("ni,ni->n", arms, arms)
     spread = squares[:, None, None] * np.eye(3) - arms[:, :, None] * arms[:, None]
-    inertia = np.sum(own + bodies.masses[:, None, None] * spread, axis=0)
+    inertia = np.sum(own + bodies.mass[:, None, None] * spread, axis=0)
     momentum = np.sum(
-        np.einsum("nij,nj->ni", own, angular) + bodies.masses[:, None] * np.cross(arms, flows), 0
+        np.einsum("nij,nj->ni", own, angular) + bodies.mass[:, None] * np.cross(arms, flows), 0
     )
     return -np.linalg.solve(inertia, momentum)
 
@@ -69,13 +77,13 @@ def complex_rate(robot, values, rates):
 def test_the_rate_at_complex_joint_values_is_below_its_bound(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     values, rates = rng.uniform(-2.0, 2.0, (2, robot.nd))
-    states, rate, least = states_at(robot, values, rates)
-    assert np.allclose(complex_rate(robot, values, rates), rate, atol=1e-12)
-    moved, shares, finite = excursions(robot.nd + 1), [], 0
+    links, whole, least = states_at(robot, values, rates)
+    assert np.allclose(complex_rate(robot, values, rates), whole.rate, atol=1e-12)
+    moved, shares, finite = records(EXCURSION, robot.nd + 1), [], 0
     for _ in range(40):
         real, imaginary = 10.0 ** rng.uniform(-2.5, 0.0, 2)
-        excursions_of_links(robot.bodies, rates, real, imaginary, states, moved)
-        bound = rate_bound(robot.bodies, least, states, moved)
+        excursions_of_links(robot.bodies, rates, real, imaginary, links, moved)
+        bound = rate_bound(robot.bodies, least, links, moved)
         finite += np.isfinite(bound)
         for angle in rng.uniform(0.0, 2.0 * np.pi, 20):
             away = real * np.cos(angle) + 1j * imaginary * np.sin(angle)
@@ -90,11 +98,11 @@ def test_the_bound_goes_to_infinity_before_the_rate_does(moment):
     """A pole is close to the real axis where the arm carries the centre of mass past the base's."""
     robot, _ = two_bodies(np.random.default_rng(1), moment, 0.5, 0.5)
     values, rates = np.array([np.pi]), np.ones(1)
-    states, _, least = states_at(robot, values, rates)
-    moved, largest = excursions(2), 0.0
+    links, _, least = states_at(robot, values, rates)
+    moved, largest = records(EXCURSION, 2), 0.0
     for imaginary in np.geomspace(1e-4, 1.0, 400):
-        excursions_of_links(robot.bodies, rates, 1e-9, imaginary, states, moved)
-        bound = rate_bound(robot.bodies, least, states, moved)
+        excursions_of_links(robot.bodies, rates, 1e-9, imaginary, links, moved)
+        bound = rate_bound(robot.bodies, least, links, moved)
         found = np.linalg.norm(complex_rate(robot, values + 1j * imaginary, rates))
         assert found <= bound * (1.0 + 1e-9)
         largest = max(largest, found)
@@ -105,9 +113,9 @@ def test_the_constant_of_the_interpolation_is_that_of_the_points():
     """1 plus the largest sum of the absolute Lagrange polynomials."""
     points = reaction_kernels.gauss_points()
     u = np.linspace(-1.0, 1.0, 20001)
-    lagrange = np.vander(u, len(points.times), increasing=True) @ points.monomials
+    lagrange = np.vander(u, len(points), increasing=True) @ points.monomials
     assert np.allclose(lagrange.sum(axis=1), 1.0, atol=1e-11)
-    integrals = np.abs(lagrange).mean(axis=0) * 2.0 / points.weights
+    integrals = np.abs(lagrange).mean(axis=0) * 2.0 / points.weight
     assert integrals.max() < reaction_kernels._ABSOLUTE
     largest = np.abs(lagrange).sum(axis=1).max()
     assert reaction_kernels.INTERPOLATION - 0.2 < 1.0 + largest < reaction_kernels.INTERPOLATION
@@ -141,8 +149,9 @@ def test_segments_are_cut_where_they_need_it():
     robot = random_robot(3)
     steps = np.array([[0.0], [1e-3], [3.0]]) * np.ones(robot.nd)
     reaction = Reaction(robot, np.zeros((3, robot.nd)), steps)
-    counts = np.bincount(reaction._substeps.segments, minlength=3)
+    substeps = reaction.partial.substeps
+    counts = np.bincount(substeps.segment, minlength=3)
     assert counts[0] == counts[1] == 1
     assert counts[2] > 4
-    lengths = [reaction._substeps.lengths[reaction._substeps.segments == k].sum() for k in range(3)]
+    lengths = [substeps.length[substeps.segment == k].sum() for k in range(3)]
     assert np.allclose(lengths, 1.0, rtol=0.0, atol=1e-15)

@@ -10,9 +10,29 @@ import numpy as np
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.rotations import cross
-from ffsr_plan.proof.travel_bound import IntervalTravel, hull_points
+from ffsr_plan.proof.travel_bound import hull_points
 from ffsr_plan.robots.kinematics import Poses, Tree, Velocities, turned
 from ffsr_plan.robots.robot import SpaceRobot
+
+
+class ReferenceTravel(NamedTuple):
+    """The travel bound over K intervals, the columns of `TRAVEL` one by one.
+
+    Attributes:
+        velocity: (K, P, 3) at the middle relative to the base origin, world axes [m].
+        speed: (K, P) bound on the norm of that velocity over the interval [m].
+        curvature: (K, P) length that a change of velocity can add [m].
+        attitude_error: (K, P) length that the error of the attitude can add [m].
+        lengths: (K,) of the intervals, in units of edge time.
+        first: (g,) index of the first point of each shape.
+    """
+
+    velocity: Array
+    speed: Array
+    curvature: Array
+    attitude_error: Array
+    lengths: Array
+    first: IntArray
 
 
 class LinkBounds(NamedTuple):
@@ -154,8 +174,8 @@ class ObserverTravels(NamedTuple):
             bounds.
     """
 
-    world: IntervalTravel
-    in_base: IntervalTravel
+    world: ReferenceTravel
+    in_base: ReferenceTravel
 
 
 class _BaseRotation(NamedTuple):
@@ -276,7 +296,7 @@ class ReferenceBound:
         position, relative, points = links.of_points(self.links, self.points)
         length = 2.0 * links.half
         quarter = 0.25 * length**2
-        in_base = IntervalTravel(
+        in_base = ReferenceTravel(
             relative,
             points.speed,
             quarter * points.acceleration,
@@ -293,7 +313,7 @@ class ReferenceBound:
             + 2.0 * angular * points.speed
             + points.acceleration
         )
-        world = IntervalTravel(
+        world = ReferenceTravel(
             velocity @ np.swapaxes(rotations.matrix(attitudes), -1, -2),
             angular * points.distance + points.speed,
             quarter * acceleration,

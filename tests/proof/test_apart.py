@@ -11,6 +11,7 @@ from ffsr_plan.proof.course import course_in_base
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import certify
 from ffsr_plan.proof.kernels import apart
+from ffsr_plan.proof.kernels.course import memory_for
 from ffsr_plan.proof.motion_edges import SelfCollisionEdge
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.scene.scene import Scene
@@ -77,7 +78,9 @@ def test_pairs_proven_apart_do_not_touch(seed):
         return
     prover = Prover(motion, Scene(), TOLERANCE)
     course = course_in_base(motion, prover._travel)
-    proven = apart.prove_apart(course, query.pairs, 1e-7)
+    proven = np.zeros((motion.edges, len(query.pairs)), dtype=bool)
+    memory, known = memory_for(course), apart.known_for(course)
+    apart.prove_apart(course, query.pairs, 1e-7, memory, known, proven)
     for layer in range(motion.edges):
         for q in motion.at(np.full(60, layer), np.linspace(0.0, 1.0, 60)):
             assert np.all(query.distances(q)[proven[layer]] > 0.0)

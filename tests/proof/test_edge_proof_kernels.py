@@ -7,11 +7,19 @@ import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import records
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.course import course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.kernels.course import measure, memory_for, place_shapes, travel_of_shapes
-from ffsr_plan.proof.kernels.edge_proof import OPEN, PROVEN, TOUCHED, prove
+from ffsr_plan.proof.kernels.edge_proof import (
+    EDGE,
+    OPEN,
+    PROVEN,
+    TOUCHED,
+    intervals_for,
+    prove,
+)
 from ffsr_plan.proof.prover import Prover
 from tests.helpers.urdf_builders import random_robot
 
@@ -65,7 +73,8 @@ def test_travel_is_bounded_as_along_the_edges_of_the_motion(seed, mode):
         layer, parts = int(rng.integers(4)), 2 ** int(rng.integers(6))
         part = int(rng.integers(parts))
         begin, end = part / parts, (part + 1) / parts
-        travel_of_shapes(course, layer, begin, end, step, memory, found)
+        memory.vectors[1] = step
+        travel_of_shapes(course, layer, begin, end, memory, found)
         expected = travel.bounds(layer, begin, end, step)
         if parts == 1 or travel.over(0.0, 1.0)[1][layer]:
             assert np.allclose(found, expected, rtol=1e-11, atol=1e-12)
@@ -84,19 +93,22 @@ def test_decisions_are_verdicts_of_the_proof_by_coal(seed, mode):
     if motion.mode.floats:
         tails[:] = heads[:] = 0.0
     ends = np.column_stack([prover.clearances(layers, tails), prover.clearances(layers + 1, heads)])
-    found = prove(course, prover.speeds, layers, tails, heads, ends, prover.rounding, 1e-4)
+    found, memory = records(EDGE, count), memory_for(course)
+    found.layer, found.tail, found.head, found.ends = layers, tails, heads, ends
+    halving = intervals_for(course)
+    prove(course, prover.speeds, found, prover.rounding, 1e-4, memory, halving)
     exact = bool(robot.primitives.exact.all())
-    for k, state in enumerate(found.states):
+    for k, state in enumerate(found.state):
         verdict = prover.certify(int(layers[k]), tails[k], heads[k], tuple(ends[k]))
         if state == PROVEN:
             assert verdict.free
         if state == TOUCHED and exact:
             assert not verdict.free
-            assert verdict.time == found.times[k]
+            assert verdict.time == found.time[k]
             assert verdict.least_clearance == pytest.approx(found.least[k], abs=1e-9)
         if state == OPEN and exact:
             assert verdict.least_clearance < 1.1e-4
-        if exact and state == PROVEN and verdict.queries == found.counts[k]:
+        if exact and state == PROVEN and verdict.queries == found.count[k]:
             assert verdict.least_clearance == pytest.approx(found.least[k], abs=1e-9)
 
 

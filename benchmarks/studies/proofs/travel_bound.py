@@ -80,7 +80,7 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
         if mode == "free-flying":
             quats = reaction.rotation(every, times.ravel())
             at_middle = reaction.rotation(edge, middles)
-            moved = BaseMotion(True, False, np.zeros(3), 0.0)
+            moved = BaseMotion(True, False, (0.0, 0.0, 0.0), 0.0)
             travel = bound.in_world(now, rates, lengths, moved, at_middle)
             omega = None
         else:
@@ -88,8 +88,8 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
             at_middle = rotations.exp(middles[:, None] * turns[edge])
             travel = held_travel(bound, (now, rates, lengths, at_middle), turns)
             omega = np.linalg.norm(turns, axis=1)
-        points = rng.integers(travel.speed.shape[1], size=len(edge))
-        follows = -travel.velocity[np.arange(len(edge)), points]
+        points = rng.integers(travel.points.speed.shape[1], size=len(edge))
+        follows = -travel.points.velocity[np.arange(len(edge)), points]
         moves = np.where(which[:, None] == 2, follows, base)
         places = about @ np.swapaxes(rotations.matrix(quats), -1, -2)
         places = places.reshape(*times.shape, -1, 3)
@@ -108,18 +108,20 @@ def held_travel(
     """The bound for a base that turns; as many intervals in a row for each of the turns (e, 3)."""
     parts = [np.split(array, len(turns)) for array in intervals]
     travels = [
-        bound.in_world(*each[:3], BaseMotion(False, False, turn, 0.0), each[3])
+        bound.in_world(*each[:3], BaseMotion(False, False, tuple(turn), 0.0), each[3])
         for turn, each in zip(turns, zip(*parts, strict=True), strict=True)
     ]
-    arrays = [np.concatenate(columns) for columns in zip(*(t[:5] for t in travels), strict=True)]
-    return IntervalTravel(*arrays, travels[0].first)
+    points = np.concatenate([each.points for each in travels]).view(np.recarray)
+    return IntervalTravel(
+        points, np.concatenate([each.lengths for each in travels]), travels[0].first
+    )
 
 
 def relative_places(robot: fp.SpaceRobot, joint_values: np.ndarray) -> np.ndarray:
     """(N, P, 3) points of all shapes relative to the base; `Tree` is tested against Pinocchio."""
     poses, points = Tree(robot.model).poses(joint_values), TravelBound(robot).points
-    links = points.links
-    return poses.origins[:, links] + turned(poses.rotations[:, links], points.places)
+    links = points.link
+    return poses.origins[:, links] + turned(poses.rotations[:, links], points.place)
 
 
 def simple_speeds(
@@ -144,11 +146,11 @@ def simple_speeds(
             energy += body.mass * speed**2 + most * angular[:, j] ** 2
             inertia += least
         omega = np.sqrt(energy / inertia)
-    points = TravelBound(robot).points
-    reach = np.linalg.norm(points.places, axis=1)
-    speeds = omega[:, None] * (distance[:, points.links] + reach)
-    speeds += linear[:, points.links] + angular[:, points.links] * reach
-    return np.maximum.reduceat(speeds, points.first[:-1], axis=-1)
+    bound = TravelBound(robot)
+    links, reach = bound.points.link, np.linalg.norm(bound.points.place, axis=1)
+    speeds = omega[:, None] * (distance[:, links] + reach)
+    speeds += linear[:, links] + angular[:, links] * reach
+    return np.maximum.reduceat(speeds, bound.shapes.first, axis=-1)
 
 
 class Ratios:

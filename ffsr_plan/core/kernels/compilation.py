@@ -46,7 +46,8 @@ class Kernel:
         """The numba dispatcher, made at the first use."""
         from numba import njit
 
-        dispatcher = njit(nogil=True, no_cfunc_wrapper=True)(self.py_func)
+        options: dict[str, Any] = {"no_cfunc_wrapper": True}
+        dispatcher = njit(nogil=True, **options)(self.py_func)
         _listen_once(keep_on_disk(dispatcher))
         return dispatcher
 
@@ -59,8 +60,8 @@ class Kernel:
         """
         from numba import njit
 
-        options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-        return njit(nogil=True, inline=self.targetoptions["inline"], **options)(self.py_func)
+        options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        return njit(nogil=True, **options | self.targetoptions)(self.py_func)
 
     @property
     def _numba_type_(self) -> object:

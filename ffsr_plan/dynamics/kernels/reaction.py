@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import (
-    LinkStates,
+    ROBOT_STATE,
     base_rate,
     link_states,
     move_links,
@@ -25,8 +25,7 @@ from ffsr_plan.dynamics.kernels.bodies import (
     weigh_links,
 )
 from ffsr_plan.dynamics.kernels.rate_bound import (
-    Excursions,
-    excursions,
+    EXCURSION,
     excursions_of_links,
     rate_bound,
 )
@@ -39,7 +38,6 @@ from ffsr_plan.dynamics.kernels.rotation_series import (
     normalise,
     rotation_series,
 )
-from ffsr_plan.robots.kinematics import Bodies
 
 MOST_SUBSTEPS = 4096
 """Substeps of one segment at most."""
@@ -51,55 +49,79 @@ _ABSOLUTE = 2.0  # integral of the absolute value of a Lagrange polynomial, rela
 _ROUNDING = 32.0 * np.finfo(np.float64).eps  # [rad] of the quaternions of one substep
 
 
-class Points(NamedTuple):
-    """Where omega is evaluated over a substep, local times from -1 to 1.
+POINT = np.dtype([("time", np.float64), ("weight", np.float64), ("monomials", np.float64, POINTS)])
+"""Where omega is evaluated over a substep, local times from -1 to 1.
+
+    time        the Gauss point
+    weight      its weight
+    monomials   (13,) from values at the points to the coefficient of the power of its number
+"""
+
+EXPANSION = np.dtype(
+    [
+        ("rates", np.float64, (POINTS, 3)),
+        ("powers", np.float64, (POINTS, 3)),
+        ("terms", np.float64, (TERMS, 4)),
+        ("sizes", np.float64, TERMS),
+        ("quat", np.float64, 4),
+    ]
+)
+"""Memory for one substep: omega at the points, as a power series, and the rotation's series."""
+
+
+class Memory(NamedTuple):
+    """Scratch memory for a robot with n links.
 
     Attributes:
-        times: (13,) the Gauss points.
-        weights: (13,) their weights.
-        monomials: (13, 13) from values at the points to the coefficients of powers.
+        values: (nd,) joint values.
+        links: (n,) records of `LINK_STATE`.
+        robot: (1,) of `ROBOT_STATE`.
+        moved: (n,) of `EXCURSION`.
+        left: (64, 2) starts and lengths of substeps.
+        expansion: (1,) of `EXPANSION`.
     """
 
-    times: Array
-    weights: Array
-    monomials: Array
+    values: Array
+    links: Records
+    robot: Records
+    moved: Records
+    left: Array
+    expansion: Records
 
 
-def gauss_points() -> Points:
-    """The points and their interpolation."""
-    times, weights = legendre.leggauss(POINTS)
+def memory_for(count: int) -> Memory:
+    """Memory for `count` links."""
+    return Memory(
+        np.empty(count - 1),
+        link_states(count),
+        records(ROBOT_STATE, 1),
+        records(EXCURSION, count),
+        np.empty((64, 2)),
+        records(EXPANSION, 1),
+    )
+
+
+def gauss_points() -> Records:
+    """(13,) the points and their interpolation, records of `POINT`."""
+    points = records(POINT, POINTS)
+    points.time, points.weight = legendre.leggauss(POINTS)
     powers = np.zeros((POINTS, POINTS))  # of the Legendre polynomials
     for k in range(POINTS):
         powers[: k + 1, k] = legendre.leg2poly(np.eye(POINTS)[k])[: k + 1]
-    values = legendre.legvander(times, POINTS - 1) * weights[:, None]
-    return Points(times, weights, powers @ (values * (np.arange(POINTS) + 0.5)).T)
-
-
-class Substeps(NamedTuple):
-    """S substeps of segments, in the order of the segments and of time.
-
-    Attributes:
-        segments: (S,) the segment.
-        begins: (S,) time at its start, in [0, 1].
-        lengths: (S,) in units of the segment's time; 0 in place of a segment that needs too many.
-        errors: (S,) bound on the angle that the polynomial misses [rad].
-    """
-
-    segments: IntArray
-    begins: Array
-    lengths: Array
-    errors: Array
+    values = legendre.legvander(points.time, POINTS - 1) * points.weight[:, None]
+    points.monomials = powers @ (values * (np.arange(POINTS) + 0.5)).T
+    return points
 
 
 @kernel
 def _approximation_error(
-    bodies: Bodies,
+    bodies: Records,
     rates: Array,
     half: float,
     tolerance: float,
     least: float,
-    states: LinkStates,
-    moved: Excursions,
+    links: Records,
+    moved: Records,
 ) -> float:
     """Bound on the largest difference of omega from its polynomial over a substep [rad].
 
@@ -109,14 +131,15 @@ def _approximation_error(
         half: half the length of the substep.
         tolerance: a bound below it is good enough.
         least: least eigenvalue of the inertia in the middle, from below [kg m^2].
-        states: the links in the middle.
+        links: in the middle.
         moved: scratch memory.
     """
     largest = 0.0  # joint rotation from the base to any link, and sliding, over the substep's half
-    for j in range(1, len(bodies.parents)):
-        p = bodies.parents[j]
-        moved.turn[j] = moved.turn[p] + abs(rates[j - 1]) * half
-        largest = max(largest, moved.turn[j])
+    moved[0].turn = 0.0
+    for j in range(1, len(bodies)):
+        turn = moved[bodies[j].parent].turn + abs(rates[j - 1]) * half
+        moved[j].turn = turn
+        largest = max(largest, turn)
     if largest == 0.0:
         return 0.0
     error, twist = np.inf, _LARGEST_TWIST
@@ -126,8 +149,8 @@ def _approximation_error(
         if rho < _LEAST_RHO:
             return error
         real = half * 0.5 * (rho + 1.0 / rho)
-        excursions_of_links(bodies, rates, real, half * imaginary, states, moved)
-        size = rate_bound(bodies, least, states, moved)
+        excursions_of_links(bodies, rates, real, half * imaginary, links, moved)
+        size = rate_bound(bodies, least, links, moved)
         found = 2.0 * INTERPOLATION * size * rho ** (1 - POINTS) / (rho - 1.0)
         if found <= tolerance or found > error:
             return min(found, error)
@@ -135,7 +158,16 @@ def _approximation_error(
 
 
 @kernel
-def cut(bodies: Bodies, begin: Array, steps: Array, tolerance: float) -> Substeps:
+def cut(
+    bodies: Records,
+    begin: Array,
+    steps: Array,
+    tolerance: float,
+    memory: Memory,
+    segment: int,
+    count: int,
+    substeps: Records,
+) -> tuple[int, int]:
     """Halve segments until the polynomials are close enough to omega.
 
     Args:
@@ -143,127 +175,115 @@ def cut(bodies: Bodies, begin: Array, steps: Array, tolerance: float) -> Substep
         begin: (m, nd) joint values at the start of each segment [rad or m].
         steps: (m, nd) their change over it.
         tolerance: for the error over a whole segment [rad].
+        memory: scratch memory.
+        segment: the first to cut.
+        count: number of substeps of those before it.
+        substeps: filled in from there: segment, begin, length and error.
+
+    Returns:
+        The first segment that is not cut because there is no room left, or m; and the number of
+        substeps of those before it.
     """
-    states, moved = link_states(len(bodies.parents)), excursions(len(bodies.parents))
-    values, rate, count = np.empty(begin.shape[1]), np.empty(3), 0
-    size = 2 * len(begin) + 64
-    segments, table = np.empty(size, np.int64), np.empty((size, 3))
-    left = np.empty((64, 2))
-    for k in range(len(begin)):
+    values, links, robot, left = memory.values, memory.links, memory.robot, memory.left
+    for k in range(segment, len(begin)):
         first, top = count, 1
-        left[0] = 0.0, 1.0
+        left[0, 0], left[0, 1] = 0.0, 1.0
         while top > 0:
+            if count == len(substeps):
+                return k, first
             top -= 1
             start, length = left[top, 0], left[top, 1]
             for j in range(len(values)):
                 values[j] = begin[k, j] + (start + 0.5 * length) * steps[k, j]
-            move_links(bodies, values, steps[k], states)
-            weigh_links(bodies, states)
-            least = base_rate(states, rate)
+            move_links(bodies, values, steps[k], links)
+            weigh_links(bodies, links, robot)
+            least = base_rate(robot)
             error = _approximation_error(
-                bodies, steps[k], 0.5 * length, tolerance, least, states, moved
+                bodies, steps[k], 0.5 * length, tolerance, least, links, memory.moved
             )
             if not error <= tolerance and length > 2.0**-50 and count - first < MOST_SUBSTEPS:
-                left[top] = start + 0.5 * length, 0.5 * length
-                left[top + 1] = start, 0.5 * length
+                left[top, 0], left[top, 1] = start + 0.5 * length, 0.5 * length
+                left[top + 1, 0], left[top + 1, 1] = start, 0.5 * length
                 top += 2
                 continue
             if not error <= tolerance:  # the segment is given up
                 count, top, length, error = first, 0, 0.0, np.inf
-            if count == size:
-                segments = np.concatenate((segments, np.empty(size, np.int64)))
-                table = np.concatenate((table, np.empty((size, 3))))
-                size *= 2
-            segments[count] = k
-            table[count] = start, length, error * length
+            substep = substeps[count]
+            substep.segment, substep.begin, substep.length = k, start, length
+            substep.error = error * length
             count += 1
-    return Substeps(
-        segments[:count], table[:count, 0].copy(), table[:count, 1].copy(), table[:count, 2].copy()
-    )
-
-
-class Rotations(NamedTuple):
-    """The base's rotation over S substeps.
-
-    Attributes:
-        turns: (S, 4) rotation over the whole substep, in the base frame at its start (xyzw).
-        backs: (S, 4) rotation from the middle back to the start (xyzw).
-        series: (S, TERMS, 4) power series of the rotation from the middle to local times from -1 to
-            1; (0, TERMS, 4) if it is not kept.
-        errors: (S,) bound on the error of the rotation over the substep [rad].
-    """
-
-    turns: Array
-    backs: Array
-    series: Array
-    errors: Array
+    return len(begin), count
 
 
 @kernel
 def expand(
-    bodies: Bodies, begin: Array, steps: Array, substeps: Substeps, points: Points, keep: bool
-) -> Rotations:
+    bodies: Records,
+    begin: Array,
+    steps: Array,
+    points: Records,
+    memory: Memory,
+    substeps: Records,
+    series: Array,
+) -> None:
     """Integrate the rotation over substeps.
 
     Args:
         bodies: the links.
         begin: (m, nd) joint values at the start of each segment [rad or m].
         steps: (m, nd) their change over it.
-        substeps: of the segments.
-        points: from `gauss_points`.
-        keep: whether to keep the series.
+        points: (13,) of `gauss_points`.
+        memory: scratch memory.
+        substeps: (S,) of the segments; turns and backs are filled in, errors added to.
+        series: (S, TERMS, 4) the series, filled in; (0, TERMS, 4) to drop it.
     """
-    states, values = link_states(len(bodies.parents)), np.empty(begin.shape[1])
-    count, rates = len(substeps.segments), np.empty((POINTS, 3))
-    turns, backs, errors = np.empty((count, 4)), np.empty((count, 4)), substeps.errors.copy()
-    series = np.empty((count if keep else 0, TERMS, 4))
-    terms, sizes, powers = np.empty((TERMS, 4)), np.empty(TERMS), np.empty((POINTS, 3))
-    for s in range(count):
-        k, half, rounding = substeps.segments[s], 0.5 * substeps.lengths[s], 0.0
+    values, links, robot, own = memory.values, memory.links, memory.robot, memory.expansion[0]
+    for s in range(len(substeps)):
+        substep, rounding = substeps[s], 0.0
+        k, half = substep.segment, 0.5 * substep.length
         for n in range(POINTS):
-            time = substeps.begins[s] + half * (1.0 + points.times[n])
+            time = substep.begin + half * (1.0 + points[n].time)
             for j in range(len(values)):
                 values[j] = begin[k, j] + time * steps[k, j]
-            move_links(bodies, values, steps[k], states)
-            weigh_links(bodies, states)
-            least = base_rate(states, rates[n])
-            rounding += points.weights[n] * rate_rounding(bodies, states, rates[n], least)
+            move_links(bodies, values, steps[k], links)
+            weigh_links(bodies, links, robot)
+            least = base_rate(robot)
+            rounding += points[n].weight * rate_rounding(bodies, links, robot, least)
+            for a in range(3):
+                own.rates[n, a] = robot[0].rate[a]
         for i in range(POINTS):
             for a in range(3):
-                powers[i, a] = 0.0
+                power = 0.0
                 for n in range(POINTS):
-                    powers[i, a] += 0.5 * half * points.monomials[i, n] * rates[n, a]
-        remainder = rotation_series(powers, terms, sizes)
-        errors[s] += _ABSOLUTE * half * rounding + 4.0 * remainder + _ROUNDING
-        end_to_end(terms, turns[s], backs[s])
-        if keep:
-            series[s] = terms
-    return Rotations(turns, backs, series, errors)
+                    power += 0.5 * half * points[i].monomials[n] * own.rates[n, a]
+                own.powers[i, a] = power
+        remainder = rotation_series(own.powers, own.terms, own.sizes)
+        substep.error += _ABSOLUTE * half * rounding + 4.0 * remainder + _ROUNDING
+        end_to_end(own.terms, substep.turn, substep.back, own.quat)
+        if len(series) > 0:
+            for i in range(TERMS):
+                for a in range(4):
+                    series[s, i, a] = own.terms[i, a]
 
 
 @kernel
-def chained(segments: IntArray, rotations: Rotations, count: int) -> tuple[Array, Array, Array]:
+def chain(substeps: Records, memory: Memory, whole: Array, errors: Array) -> None:
     """Rotations over whole segments.
 
     Args:
-        segments: (S,) of the substeps.
-        rotations: over the substeps.
-        count: m, number of segments.
-
-    Returns:
-        (m, 4) rotation over each segment; (S, 4) rotation from its start to the middle of each
-        substep (both xyzw); and (m,) bound on the error of any rotation within it [rad].
+        substeps: (S,) of the segments; the middles are filled in.
+        memory: scratch memory.
+        whole: (m, 4) rotation over each segment (xyzw), filled in; at first the identity.
+        errors: (m,) bound on the error of any rotation within each [rad], filled in; at first zero.
     """
-    whole, middles = np.zeros((count, 4)), np.empty((len(segments), 4))
-    errors, place = np.zeros(count), np.empty(4)
-    whole[:, 3] = 1.0
-    for s in range(len(segments)):
-        k = segments[s]
-        place[:] = rotations.backs[s]
+    place = memory.expansion[0].quat
+    for s in range(len(substeps)):
+        substep, turn = substeps[s], whole[substeps[s].segment]
+        for a in range(4):
+            place[a] = substep.back[a]
         inverse(place)
-        multiply(middles[s], whole[k], place)
-        multiply(place, whole[k], rotations.turns[s])
+        multiply(substep.middle, turn, place)
+        multiply(place, turn, substep.turn)
         normalise(place)
-        whole[k] = place
-        errors[k] += rotations.errors[s]
-    return whole, middles, errors
+        for a in range(4):
+            turn[a] = place[a]
+        errors[substep.segment] += substep.error

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, Records
 from ffsr_plan.core.kernels.compilation import kernel
 
 POINTS = 13
@@ -37,28 +37,36 @@ def rotation_series(powers: Array, terms: Array, sizes: Array) -> float:
     Returns:
         Bound on the terms left out, at any u from -1 to 1.
     """
-    terms[0] = 0.0
+    for a in range(4):
+        terms[0, a] = 0.0
     terms[0, 3], sizes[0] = 1.0, 1.0
     exponent, total = 0.0, 1.0
     for j in range(POINTS):
         x, y, z = powers[j, 0], powers[j, 1], powers[j, 2]
         exponent += math.sqrt(x * x + y * y + z * z) / (j + 1)
     for k in range(TERMS - 1):
-        terms[k + 1], sizes[k + 1] = 0.0, 0.0
+        term, sizes[k + 1] = terms[k + 1], 0.0
+        for a in range(4):
+            term[a] = 0.0
         for j in range(min(k + 1, POINTS)):
             x, y, z = powers[j, 0], powers[j, 1], powers[j, 2]
-            _add_product(terms[k + 1], terms[k - j], x, y, z)
+            _add_product(term, terms[k - j], x, y, z)
             sizes[k + 1] += sizes[k - j] * math.sqrt(x * x + y * y + z * z)
-        terms[k + 1] /= k + 1
+        for a in range(4):
+            term[a] /= k + 1
         sizes[k + 1] /= k + 1
         total += sizes[k + 1]
     return max(math.exp(exponent) - total, 0.0)
 
 
 @kernel
-def end_to_end(terms: Array, turn: Array, back: Array) -> None:
-    """Rotations (4,) over a substep and from its middle to its start, from the series."""
-    ahead, turn[:], back[:] = np.zeros(4), 0.0, 0.0
+def end_to_end(terms: Array, turn: Array, back: Array, ahead: Array) -> None:
+    """Rotations (4,) over a substep and from its middle to its start, from the series.
+
+    `ahead` is scratch memory (4,).
+    """
+    for a in range(4):
+        ahead[a], back[a] = 0.0, 0.0
     for k in range(TERMS - 1, -1, -1):
         for a in range(4):
             ahead[a] += terms[k, a]
@@ -92,21 +100,41 @@ def multiply(result: Array, p: Array, q: Array) -> None:
     _add_product(result, p, q[0], q[1], q[2])
 
 
+SUBSTEP = np.dtype(
+    [
+        ("segment", np.int64),
+        ("begin", np.float64),
+        ("length", np.float64),
+        ("error", np.float64),
+        ("turn", np.float64, 4),
+        ("back", np.float64, 4),
+        ("middle", np.float64, 4),
+    ]
+)
+"""A part of a segment over which one polynomial is close to omega.
+
+    segment     the segment
+    begin       time at its start, in [0, 1]
+    length      in units of the segment's time; 0 in place of a segment that needs too many
+    error       bound on the error of the rotation over it [rad]
+    turn        (4,) rotation over the whole substep, in the base frame at its start (xyzw)
+    back        (4,) rotation from its middle back to its start (xyzw)
+    middle      (4,) rotation from the start of the segment to its middle (xyzw)
+"""
+
+
 class Partial(NamedTuple):
-    """What rotations within segments are computed from.
+    """What rotations within m segments of S substeps are computed from.
 
     Attributes:
         first: (m + 1,) first substep of each segment.
-        begins: (S,) time at the start of each substep.
-        lengths: (S,) of the substeps.
-        middles: (S, 4) rotation from the start of the segment to the middle of each substep.
-        series: (S, TERMS, 4) of `Rotations`.
+        substeps: (S,) records of `SUBSTEP`, in the order of the segments and of time.
+        series: (S, TERMS, 4) power series of the rotation from the middle of each substep to local
+            times from -1 to 1; (0, TERMS, 4) if it is not kept.
     """
 
     first: IntArray
-    begins: Array
-    lengths: Array
-    middles: Array
+    substeps: Records
     series: Array
 
 
@@ -122,34 +150,35 @@ def rotation_at(partial: Partial, segment: int, time: float, local: Array, resul
         result: (4,) the rotation (xyzw), filled in.
     """
     low, high = partial.first[segment], partial.first[segment + 1] - 1
+    substeps, series = partial.substeps, partial.series
     while low < high:
         middle = (low + high + 1) // 2
-        if partial.begins[middle] <= time:
+        if substeps[middle].begin <= time:
             low = middle
         else:
             high = middle - 1
-    u = 2.0 * (time - partial.begins[low]) / partial.lengths[low] - 1.0
-    local[:] = 0.0
+    u = 2.0 * (time - substeps[low].begin) / substeps[low].length - 1.0
+    for a in range(4):
+        local[a] = 0.0
     for k in range(TERMS - 1, -1, -1):
         for a in range(4):
-            local[a] = local[a] * u + partial.series[low, k, a]
-    multiply(result, partial.middles[low], local)
+            local[a] = local[a] * u + series[low, k, a]
+    multiply(result, substeps[low].middle, local)
     normalise(result)
 
 
 @kernel
-def rotations_at(partial: Partial, segments: IntArray, times: Array) -> Array:
+def rotations_at(
+    partial: Partial, segments: IntArray, times: Array, local: Array, result: Array
+) -> None:
     """Rotations from the start of segments.
 
     Args:
         partial: of all segments.
         segments: (N,) which segments.
         times: (N,) times on them, in [0, 1].
-
-    Returns:
-        (N, 4) rotations (xyzw).
+        local: (4,) scratch memory.
+        result: (N, 4) rotations (xyzw), filled in.
     """
-    result, local = np.empty((len(segments), 4)), np.empty(4)
     for n in range(len(segments)):
         rotation_at(partial, segments[n], times[n], local, result[n])
-    return result

@@ -7,12 +7,13 @@ around it. Two such boxes are apart by at least the gap between their shadows on
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.proof.kernels.course import Course, memory_for, place_shapes, travel_of_shapes
+from ffsr_plan.proof.kernels.course import Course, Memory, place_shapes, travel_of_shapes
 from ffsr_plan.robots.shape_arrays import BOX
 
 DEEPEST = 5
@@ -80,49 +81,99 @@ def least_gap(first: int, one: Array, second: int, other: Array) -> float:
     return best
 
 
+class Known(NamedTuple):
+    """Memory for what is computed once for all pairs of g shapes on an edge.
+
+    Attributes:
+        frames: (2^DEEPEST + 1, g, 15) placements of the shapes.
+        placed: (2^DEEPEST + 1,) whether they have been computed.
+        ways: (2^(DEEPEST + 1), g) travel of the shapes over intervals, numbered as in a heap [m].
+        bounded: (2^(DEEPEST + 1),) whether it has been computed.
+        stack: (DEEPEST + 2, 2) intervals.
+    """
+
+    frames: Array
+    placed: Flags
+    ways: Array
+    bounded: Flags
+    stack: IntArray
+
+
+def known_for(course: Course) -> Known:
+    """Memory for the edges of a course."""
+    shapes, parts = len(course.shapes), 2**DEEPEST
+    return Known(
+        np.empty((parts + 1, shapes, 15)),
+        np.empty(parts + 1, np.bool_),
+        np.empty((2 * parts, shapes)),
+        np.empty(2 * parts, np.bool_),
+        np.empty((DEEPEST + 2, 2), np.int64),
+    )
+
+
 @kernel
-def prove_apart(course: Course, pairs: IntArray, rounding: float) -> Flags:
+def prove_apart(
+    course: Course, pairs: IntArray, rounding: float, memory: Memory, known: Known, proven: Flags
+) -> None:
     """Halve every edge for each pair until the pair is proven apart, or not worth more halvings.
 
     Args:
         course: the motion as seen from the base.
         pairs: (p, 2) the shapes of each pair.
         rounding: length added to the travel of two shapes together [m].
-
-    Returns:
-        (m, p) whether the pair is proven apart all along the edge.
+        memory: scratch memory, in which the base is not displaced.
+        known: scratch memory.
+        proven: (m, p) whether the pair is proven apart all along the edge, filled in.
     """
-    edges, parts, shapes = len(course.values) - 1, 2**DEEPEST, len(course.shapes.kinds)
-    memory, still, proven = memory_for(course), np.zeros(3), np.ones((edges, len(pairs)), np.bool_)
-    frames, known = np.empty((parts + 1, shapes, 15)), np.empty(parts + 1, np.bool_)
-    ways, bounded = np.empty((2 * parts, shapes)), np.empty(2 * parts, np.bool_)
-    stack = np.empty((DEEPEST + 2, 2), np.int64)
-    for layer in range(edges):
-        known[:], bounded[:] = False, False
+    for layer in range(len(proven)):
+        for n in range(len(known.placed)):
+            known.placed[n] = False
+        for n in range(len(known.bounded)):
+            known.bounded[n] = False
         for k in range(len(pairs)):
-            i, j = pairs[k]
-            stack[0], top = (0, parts), 1
-            while top > 0:
-                top -= 1
-                begin, end = stack[top]
-                size, total = end - begin, 0.0
-                for at in (begin, end):
-                    if not known[at]:
-                        place_shapes(course, layer, at / parts, memory)
-                        frames[at], known[at] = memory.frames, True
-                    kinds, placed = course.shapes.kinds, frames[at]
-                    total += max(least_gap(kinds[i], placed[i], kinds[j], placed[j]), 0.0)
-                number = (parts + begin) // size  # of the interval, as in a heap
-                if not bounded[number]:
-                    span = begin / parts, end / parts
-                    travel_of_shapes(course, layer, *span, still, memory, ways[number])
-                    bounded[number] = True
-                if total > ways[number, i] + ways[number, j] + rounding + _MARGIN:
-                    continue
-                if size == 1:
-                    proven[layer, k] = False
-                    break
-                middle = (begin + end) // 2
-                stack[top], stack[top + 1] = (middle, end), (begin, middle)
-                top += 2
-    return proven
+            proven[layer, k] = _apart(
+                course, layer, pairs[k, 0], pairs[k, 1], rounding, memory, known
+            )
+
+
+@kernel
+def _apart(
+    course: Course, layer: int, i: int, j: int, rounding: float, memory: Memory, known: Known
+) -> bool:
+    """Whether two shapes are proven apart all along an edge."""
+    stack, ways, parts, top = known.stack, known.ways, len(known.placed) - 1, 1
+    first, second = course.shapes[i].kind, course.shapes[j].kind
+    stack[0, 0], stack[0, 1] = 0, parts
+    while top > 0:
+        top -= 1
+        begin, end = stack[top, 0], stack[top, 1]
+        size, total = end - begin, 0.0
+        for step in range(2):
+            at = begin + step * size
+            if not known.placed[at]:
+                place_shapes(course, layer, at / parts, memory)
+                _copy(memory.frames, known.frames[at])
+                known.placed[at] = True
+            frames = known.frames[at]
+            total += max(least_gap(first, frames[i], second, frames[j]), 0.0)
+        number = (parts + begin) // size  # of the interval, as in a heap
+        if not known.bounded[number]:
+            travel_of_shapes(course, layer, begin / parts, end / parts, memory, ways[number])
+            known.bounded[number] = True
+        if total > ways[number, i] + ways[number, j] + rounding + _MARGIN:
+            continue
+        if size == 1:
+            return False
+        middle = (begin + end) // 2
+        stack[top, 0], stack[top, 1] = middle, end
+        stack[top + 1, 0], stack[top + 1, 1] = begin, middle
+        top += 2
+    return True
+
+
+@kernel
+def _copy(source: Array, target: Array) -> None:
+    """Copy a matrix."""
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            target[i, j] = source[i, j]

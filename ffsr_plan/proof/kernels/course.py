@@ -13,64 +13,70 @@ from ffsr_plan.collision.nearest_sphere_kernels import (
     distance_to_sphere,
     nearest_sphere,
 )
-from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.arrays import Array, Flags, IntArray, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.dynamics.kernels.bodies import LinkStates, move_links, weigh_links
+from ffsr_plan.dynamics.kernels.bodies import move_links, norm_of, weigh_links
 from ffsr_plan.dynamics.kernels.rotation_series import Partial, multiply, normalise, rotation_at
 from ffsr_plan.proof.kernels.travel import (
+    TRAVEL,
     BaseMotion,
-    HullPoints,
     Scratch,
-    Travel,
     bound_travel,
     fill_matrix,
     scratch_for,
 )
-from ffsr_plan.robots.kinematics import Bodies
-from ffsr_plan.robots.shape_arrays import Primitives
 from ffsr_plan.scene.sphere_tree import SphereTree
 
+SHAPE = np.dtype(
+    [
+        ("kind", np.int64),
+        ("extent", np.float64, 3),
+        ("link", np.int64),
+        ("rotation", np.float64, (3, 3)),
+        ("position", np.float64, 3),
+        ("first", np.int64),
+        ("end", np.int64),
+    ]
+)
+"""A collision shape.
 
-class Attitudes(NamedTuple):
-    """The base's attitude along a motion of m edges.
-
-    Attributes:
-        starts: (k, 4) attitude at the start of each joint segment: one for each edge, or one in all
-            (xyzw).
-        turn: (3,) rotation vector of a base that does not react over an edge, base axes [rad].
-        partial: rotations within the segments of a base that reacts.
-    """
-
-    starts: Array
-    turn: Array
-    partial: Partial
+    kind        ROUND or BOX, as in `shape_arrays`
+    extent      (3,) sizes as there [m]
+    link        that carries it
+    rotation    (3, 3) shape axes to link axes
+    position    (3,) origin of the shape in the link's frame [m]
+    first, end  its points are those from `first` to `end` - 1
+"""
 
 
 class Course(NamedTuple):
     """A motion of m edges among obstacles.
 
     Attributes:
-        bodies: the links.
-        shapes: the collision shapes.
-        points: whose hulls contain the shapes.
+        bodies: (n,) the links, records of `BODY`.
+        shapes: (g,) the collision shapes, of `SHAPE`.
+        points: (P,) whose hulls contain the shapes, of `HULL_POINT`.
         tree: the obstacles, at least one.
         base: what the base does.
-        attitudes: of the base.
+        starts: (k, 4) attitude of the base at the start of each joint segment: one for each edge,
+            or one in all (xyzw).
+        partial: rotations within the segments of a base that reacts.
         positions: (m + 1, 3) base origin at the corners; where it floats, the centre of mass [m].
         values: (m + 1, nd) joint values at the corners [rad or m].
-        whole: travel over whole edges, row by row.
+        whole: (m, P) travel over whole edges, of `TRAVEL`.
         straight: (m,) whether that travel bounds parts of an edge too.
     """
 
-    bodies: Bodies
-    shapes: Primitives
-    points: HullPoints
+    bodies: Records
+    shapes: Records
+    points: Records
     tree: SphereTree
     base: BaseMotion
-    attitudes: Attitudes
+    starts: Array
+    partial: Partial
     positions: Array
     values: Array
-    whole: Travel
+    whole: Records
     straight: Flags
 
 
@@ -79,73 +85,69 @@ class Memory(NamedTuple):
 
     Attributes:
         scratch: of the travel bound.
-        travel: one row of it.
+        travel: (P,) of it, `TRAVEL`.
         frames: (g, 15) placements of the shapes.
-        values: (nd,) joint values.
-        rates: (nd,) their change over the edge.
+        joints: (2, nd) joint values, and their change over the edge.
         quats: (3, 4) attitude, and room for two others.
-        position: (3,) base origin.
+        vectors: (3, 3) base origin, displacement of it over the edge, and offset of it [m].
         stack: of the search for spheres.
         bounds: of the search for spheres.
         nearest: (g,) the sphere that was nearest to each shape last.
+        ways: (g,) travel of the shapes [m].
+        first: (g,) distances of the shapes at the start of an interval [m].
     """
 
     scratch: Scratch
-    travel: Travel
+    travel: Records
     frames: Array
-    values: Array
-    rates: Array
+    joints: Array
     quats: Array
-    position: Array
+    vectors: Array
     stack: NDArray[np.int32]
     bounds: Array
     nearest: IntArray
+    ways: Array
+    first: Array
 
 
-@kernel
 def memory_for(course: Course) -> Memory:
     """Memory for the edges of a course."""
-    points, shapes = len(course.points.links), len(course.shapes.kinds)
-    memory = Memory(
-        scratch_for(len(course.bodies.parents)),
-        Travel(
-            np.empty((1, points, 3)),
-            np.empty((1, points)),
-            np.empty((1, points)),
-            np.empty((1, points)),
-            np.empty(1),
-        ),
-        np.empty((shapes, 15)),
-        np.empty(course.values.shape[1]),
-        np.empty(course.values.shape[1]),
+    shapes = len(course.shapes)
+    frames = np.zeros((shapes, 15))
+    frames[:, 12:] = course.shapes.extent
+    return Memory(
+        scratch_for(len(course.bodies)),
+        records(TRAVEL, len(course.points)),
+        frames,
+        np.empty((2, course.values.shape[1])),
         np.empty((3, 4)),
-        np.empty(3),
+        np.zeros((3, 3)),
         np.empty(STACK_SIZE, np.int32),
         np.empty(STACK_SIZE),
         np.zeros(shapes, np.int64),
+        np.empty(shapes),
+        np.empty(shapes),
     )
-    memory.frames[:, 12:] = course.shapes.sizes
-    return memory
 
 
 @kernel
 def attitude_at(course: Course, layer: int, time: float, quats: Array) -> None:
     """Attitude of the base at a time on an edge, in the first row of `quats` (3, 4)."""
-    given, edges = course.attitudes, len(course.values) - 1
+    starts, edges, attitude, turned = course.starts, len(course.straight), quats[0], quats[1]
     if course.base.reacts:
-        each = len(given.starts) == edges
+        each = len(starts) == edges
         segment = layer if each else 0
         at = time if each else (layer + time) / edges
-        rotation_at(given.partial, segment, at, quats[2], quats[1])
-        multiply(quats[0], given.starts[segment], quats[1])
+        rotation_at(course.partial, segment, at, quats[2], turned)
+        multiply(attitude, starts[segment], turned)
     else:
-        turn, scale = given.turn, layer + time
-        x, y, z = 0.5 * scale * turn[0], 0.5 * scale * turn[1], 0.5 * scale * turn[2]
+        (x, y, z), scale = course.base.turn, layer + time
+        x, y, z = 0.5 * scale * x, 0.5 * scale * y, 0.5 * scale * z
         half = math.sqrt(x * x + y * y + z * z)
         sine = math.sin(half) / half if half > 1e-9 else 1.0
-        quats[1] = sine * x, sine * y, sine * z, math.cos(half)
-        multiply(quats[0], given.starts[0], quats[1])
-    normalise(quats[0])
+        turned[0], turned[1], turned[2], turned[3] = sine * x, sine * y, sine * z, math.cos(half)
+        multiply(attitude, starts[0], turned)
+    normalise(attitude)
 
 
 @kernel
@@ -158,34 +160,43 @@ def place_shapes(course: Course, layer: int, time: float, memory: Memory) -> Non
         time: on it, in [0, 1].
         memory: its frames are filled in.
     """
-    values, rates, states = memory.values, memory.rates, memory.scratch.states
+    values, rates, links = memory.joints[0], memory.joints[1], memory.scratch.links
+    begin, end = course.values[layer], course.values[layer + 1]
     for j in range(len(values)):
-        begin, end = course.values[layer, j], course.values[layer + 1, j]
-        values[j], rates[j] = (1.0 - time) * begin + time * end, end - begin
-    move_links(course.bodies, values, rates, states)
+        values[j], rates[j] = (1.0 - time) * begin[j] + time * end[j], end[j] - begin[j]
+    bodies, shapes = course.bodies, course.shapes
+    move_links(bodies, values, rates, links)
     attitude_at(course, layer, time, memory.quats)
-    turned, position, shapes = memory.scratch.rotation, memory.position, course.shapes
+    turned, position = memory.scratch.base[0].rotation, memory.vectors[0]
     fill_matrix(memory.quats[0], turned)
-    begin_at, end_at = course.positions[layer], course.positions[layer + 1]
+    begin, end = course.positions[layer], course.positions[layer + 1]
     for a in range(3):
-        position[a] = (1.0 - time) * begin_at[a] + time * end_at[a]
+        position[a] = (1.0 - time) * begin[a] + time * end[a]
     if course.base.floats:  # the centre of mass stays
-        weigh_links(course.bodies, states)
-        lever, arm = course.bodies.levers[0], states.arms[0]
+        weigh_links(bodies, links, memory.scratch.robot)
+        lever, arm = bodies[0].lever, links[0].arm
         for a in range(3):
             for b in range(3):
                 position[a] -= turned[a, b] * (lever[b] - arm[b])
-    for i in range(len(shapes.kinds)):
-        _place_shape(shapes, i, states, turned, position, memory.frames[i])
+    for i in range(len(shapes)):
+        link = links[shapes[i].link]
+        _place_shape(
+            shapes[i].rotation, shapes[i].position, link.rotation, link.origin, turned, position,
+            memory.frames[i],
+        )  # fmt: skip
 
 
 @kernel
 def _place_shape(
-    shapes: Primitives, i: int, states: LinkStates, turned: Array, position: Array, frame: Array
+    own: Array,
+    place: Array,
+    rotation: Array,
+    origin: Array,
+    turned: Array,
+    position: Array,
+    frame: Array,
 ) -> None:
-    """Rotation and position of shape `i` in the world, the first twelve numbers of `frame`."""
-    link = shapes.links[i]
-    rotation, origin = states.rotations[link], states.origins[link]
+    """Rotation and position of a shape in the world, the first twelve numbers of `frame`."""
     for a in range(3):
         x = turned[a, 0] * rotation[0, 0] + turned[a, 1] * rotation[1, 0]
         y = turned[a, 0] * rotation[0, 1] + turned[a, 1] * rotation[1, 1]
@@ -196,9 +207,7 @@ def _place_shape(
         at = position[a]
         for b in range(3):
             at += turned[a, b] * origin[b]
-            own = shapes.rotations[i]
             frame[3 * a + b] = x * own[0, b] + y * own[1, b] + z * own[2, b]
-        place = shapes.positions[i]
         frame[9 + a] = at + x * place[0] + y * place[1] + z * place[2]
 
 
@@ -220,26 +229,20 @@ def measure(
         The least of them [m].
     """
     place_shapes(course, layer, time, memory)
-    least = np.inf
+    least, nearest = np.inf, memory.nearest
+    tree, stack, bounds = course.tree, memory.stack, memory.bounds
     for i in range(len(found)):
-        kind, frame, near = course.shapes.kinds[i], memory.frames[i], memory.nearest[i]
-        start = distance_to_sphere(kind, frame, shift, course.tree.spheres, near)
-        found[i], memory.nearest[i] = nearest_sphere(
-            course.tree, kind, frame, shift, start, near, memory.stack, memory.bounds
-        )
-        least = min(least, found[i])
+        kind, frame, near = course.shapes[i].kind, memory.frames[i], nearest[i]
+        start = distance_to_sphere(kind, frame, shift, tree.spheres, near)
+        distance, near = nearest_sphere(tree, kind, frame, shift, start, near, stack, bounds)
+        found[i], nearest[i] = distance, near
+        least = min(least, distance)
     return least
 
 
 @kernel
 def travel_of_shapes(
-    course: Course,
-    layer: int,
-    begin: float,
-    end: float,
-    step: Array,
-    memory: Memory,
-    result: Array,
+    course: Course, layer: int, begin: float, end: float, memory: Memory, ways: Array
 ) -> None:
     """Travel bound of each shape over a part of an edge.
 
@@ -248,34 +251,34 @@ def travel_of_shapes(
         layer: the edge.
         begin: start of the part, in [0, 1].
         end: its end.
-        step: (3,) displacement of the base origin over the whole edge [m].
-        memory: scratch memory.
-        result: (g,) the bounds, filled in [m].
+        memory: scratch memory, with the displacement of the base origin over the whole edge.
+        ways: (g,) the bounds, filled in [m].
     """
-    length, row, travel, away = end - begin, layer, course.whole, abs(0.5 * (begin + end) - 0.5)
+    length, travel, away = end - begin, course.whole[layer], -1.0
     if length < 1.0 and not course.straight[layer]:
-        time, values, rates = 0.5 * (begin + end), memory.values, memory.rates
+        time, values, rates = 0.5 * (begin + end), memory.joints[0], memory.joints[1]
+        first, last = course.values[layer], course.values[layer + 1]
         for j in range(len(values)):
-            first, last = course.values[layer, j], course.values[layer + 1, j]
-            values[j], rates[j] = (1.0 - time) * first + time * last, last - first
+            values[j], rates[j] = (1.0 - time) * first[j] + time * last[j], last[j] - first[j]
         attitude_at(course, layer, time, memory.quats)
-        row, travel, away = 0, memory.travel, -1.0
+        travel = memory.travel
         bound_travel(
-            course.bodies, course.points, values, rates, length, course.base, memory.quats[0], row,
+            course.bodies, course.points, values, rates, length, course.base, memory.quats[0],
             memory.scratch, travel,
         )  # fmt: skip
-    elif length == 1.0:
-        away = -1.0
-    base_speed = math.sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2])
-    change = 4.0 / travel.lengths[row] ** 2
-    for i in range(len(result)):
-        result[i] = 0.0
-        for k in range(course.points.first[i], course.points.first[i + 1]):
-            velocity, curvature = travel.velocity[row, k], travel.curvature[row, k]
+    elif length < 1.0:
+        away = abs(0.5 * (begin + end) - 0.5)
+    step, shapes = memory.vectors[1], course.shapes
+    base_speed = norm_of(step)
+    for i in range(len(shapes)):
+        longest = 0.0
+        for k in range(shapes[i].first, shapes[i].end):
+            point, velocity = travel[k], travel[k].velocity
             x, y, z = velocity[0] + step[0], velocity[1] + step[1], velocity[2] + step[2]
-            fastest, coarse = math.sqrt(x * x + y * y + z * z), base_speed + travel.speed[row, k]
-            if away >= 0.0:  # a part that does not contain the middle
-                way = length * min(fastest + away * change * curvature, coarse)
+            fastest, coarse = math.sqrt(x * x + y * y + z * z), base_speed + point.speed
+            if away >= 0.0:  # a part of the whole edge that does not contain its middle
+                way = length * min(fastest + away * 4.0 * point.curvature, coarse)
             else:
-                way = min(length * fastest + curvature, length * coarse)
-            result[i] = max(result[i], way + travel.attitude_error[row, k])
+                way = min(length * fastest + point.curvature, length * coarse)
+            longest = max(longest, way + point.attitude_error)
+        ways[i] = longest

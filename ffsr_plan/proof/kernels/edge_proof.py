@@ -6,15 +6,14 @@ on distances by Coal (`interval_halving`). docs/proof.md, section 2, has the cri
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, Records
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.proof.kernels.course import Course, Memory, measure, memory_for, travel_of_shapes
+from ffsr_plan.dynamics.kernels.bodies import norm_of
+from ffsr_plan.proof.kernels.course import Course, Memory, measure, travel_of_shapes
 
 OPEN, PROVEN, TOUCHED = 0, 1, 2
 """What became of an edge: left to Coal; free; a configuration was found that touches."""
@@ -23,20 +22,46 @@ MARGIN = 1e-8
 _DEEPEST = 40  # halvings
 
 
-class Decisions(NamedTuple):
-    """What became of k edges.
+EDGE = np.dtype(
+    [
+        ("layer", np.int64),
+        ("tail", np.float64, 3),
+        ("head", np.float64, 3),
+        ("ends", np.float64, 2),
+        ("state", np.int64),
+        ("least", np.float64),
+        ("time", np.float64),
+        ("count", np.int64),
+    ]
+)
+"""An edge to prove, and what became of it.
+
+    layer       between which corners of the course it is
+    tail, head  (3,) offsets at its start and end [m]
+    ends        (2,) clearances there [m]
+    state       OPEN, PROVEN or TOUCHED
+    least       least clearance met [m]
+    time        when, in [0, 1]
+    count       configurations measured
+"""
+
+
+class Intervals(NamedTuple):
+    """Memory for the halving of an edge with g shapes.
 
     Attributes:
-        states: (k,) OPEN, PROVEN or TOUCHED.
-        least: (k,) least clearance met [m].
-        times: (k,) when, in [0, 1].
-        counts: (k,) configurations measured.
+        times: (depth, 2) starts and ends.
+        distances: (depth, g) of the shapes, at the ends [m].
     """
 
-    states: NDArray[np.int64]
-    least: Array
     times: Array
-    counts: IntArray
+    distances: Array
+
+
+def intervals_for(course: Course) -> Intervals:
+    """Memory for the edges of a course."""
+    distances = np.empty((_DEEPEST + 3, len(course.shapes)))
+    return Intervals(np.empty((_DEEPEST + 2, 2)), distances)
 
 
 @kernel
@@ -49,101 +74,100 @@ def _sum_above(first: Array, last: Array, ways: Array, more: float) -> float:
 
 
 @kernel
+def set_step(course: Course, layer: int, tail: Array, head: Array, memory: Memory) -> float:
+    """Fill in the displacement of the base origin over an edge, and return its length [m]."""
+    begin, end, step = course.positions[layer], course.positions[layer + 1], memory.vectors[1]
+    for a in range(3):
+        step[a] = 0.0 if course.base.floats else end[a] - begin[a] + head[a] - tail[a]
+    return norm_of(step)
+
+
+@kernel
 def prove(
     course: Course,
     speeds: Array,
-    layers: IntArray,
-    tails: Array,
-    heads: Array,
-    ends: Array,
+    edges: Records,
     rounding: float,
     tolerance: float,
-) -> Decisions:
+    memory: Memory,
+    intervals: Intervals,
+) -> None:
     """Halve each of k edges until it is decided.
 
     Args:
         course: the motion that offsets are counted from.
         speeds: (m,) bound on the speed of any point over an edge, in addition to the base's [m].
-        layers: (k,) the edges.
-        tails: (k, 3) offsets at their starts [m].
-        heads: (k, 3) offsets at their ends [m].
-        ends: (k, 2) clearances there [m].
+        edges: (k,) records of `EDGE`; their states are OPEN, and what became of them is filled in.
         rounding: length added to every travel bound [m].
         tolerance: clearance below which an edge is left to Coal [m].
+        memory: scratch memory.
+        intervals: scratch memory.
     """
-    count, memory = len(layers), memory_for(course)
-    found = Decisions(
-        np.zeros(count, np.int64), np.empty(count), np.empty(count), np.zeros(count, np.int64)
-    )
-    step, times = np.empty(3), np.empty((_DEEPEST + 2, 2))
-    distances = np.empty((_DEEPEST + 3, len(course.shapes.kinds)))
-    for k in range(count):
-        layer, length = layers[k], 0.0
-        for a in range(3):
-            along = course.positions[layer + 1, a] - course.positions[layer, a]
-            step[a] = 0.0 if course.base.floats else along + heads[k, a] - tails[k, a]
-            length += step[a] * step[a]
-        found.least[k], found.times[k] = ends[k, 0], 0.0
-        if ends[k, 1] < ends[k, 0]:
-            found.least[k], found.times[k] = ends[k, 1], 1.0
-        if found.least[k] <= max(tolerance, MARGIN):
+    for k in range(len(edges)):
+        edge, ends = edges[k], edges[k].ends
+        step = set_step(course, edge.layer, edge.tail, edge.head, memory)
+        edge.least, edge.time = ends[0], 0.0
+        if ends[1] < ends[0]:
+            edge.least, edge.time = ends[1], 1.0
+        if edge.least <= max(tolerance, MARGIN):
             continue
-        coarse = math.sqrt(length) + speeds[layer] + rounding
-        if ends[k, 0] + ends[k, 1] > coarse + MARGIN:
-            found.states[k] = PROVEN
+        if ends[0] + ends[1] > step + speeds[edge.layer] + rounding + MARGIN:
+            edge.state = PROVEN
             continue
-        _halve(
-            course, layer, (tails[k], heads[k], step), rounding, tolerance, memory, times,
-            distances, k, found,
-        )  # fmt: skip
-    return found
+        _halve(course, edge, rounding, tolerance, memory, intervals)
 
 
 @kernel
 def _halve(
     course: Course,
-    layer: int,
-    offsets: tuple[Array, Array, Array],
+    edge: Any,  # noqa: ANN401 - one record of EDGE
     rounding: float,
     tolerance: float,
     memory: Memory,
-    times: Array,
-    distances: Array,
-    k: int,
-    found: Decisions,
+    intervals: Intervals,
 ) -> None:
-    """Interval halving of one edge, the earlier half first; rows of `distances` belong to times.
+    """Interval halving of one edge, the earlier half first.
 
-    Row d + 1 of `distances` belongs to the end of the interval at depth d of the stack, and row
-    `free` to the start of the one on top.
+    Row d of `distances` belongs to the end of the interval at depth d of the stack, and `first` to
+    the start of the one on top.
     """
-    tail, head, step = offsets
-    shift, ways, first = np.empty(3), np.empty(distances.shape[1]), np.empty(distances.shape[1])
+    layer, tail, head, shift = edge.layer, edge.tail, edge.head, memory.vectors[2]
+    first, ways, times, distances = memory.first, memory.ways, intervals.times, intervals.distances
     measure(course, layer, 0.0, tail, memory, first)
     measure(course, layer, 1.0, head, memory, distances[0])
-    times[0] = 0.0, 1.0
+    times[0, 0], times[0, 1] = 0.0, 1.0
     depth = 0
     while depth >= 0:
-        begin, end = times[depth, 0], times[depth, 1]
-        travel_of_shapes(course, layer, begin, end, step, memory, ways)
-        if _sum_above(first, distances[depth], ways, rounding + 2.0 * MARGIN) > 0.0:
-            first[:] = distances[depth]
+        begin, end, last = times[depth, 0], times[depth, 1], distances[depth]
+        travel_of_shapes(course, layer, begin, end, memory, ways)
+        if _sum_above(first, last, ways, rounding + 2.0 * MARGIN) > 0.0:
+            for i in range(len(first)):
+                first[i] = last[i]
             depth -= 1
             continue
-        if ways.max() <= 2.0 * max(tolerance, rounding) or depth >= _DEEPEST:
+        if longest(ways) <= 2.0 * max(tolerance, rounding) or depth >= _DEEPEST:
             return
         middle = 0.5 * (begin + end)
         for a in range(3):
             shift[a] = (1.0 - middle) * tail[a] + middle * head[a]
         times[depth, 0] = middle  # the later half waits below
         depth += 1
-        times[depth] = begin, middle
+        times[depth, 0], times[depth, 1] = begin, middle
         least = measure(course, layer, middle, shift, memory, distances[depth])
-        found.counts[k] += 1
-        if least < found.least[k]:
-            found.least[k], found.times[k] = least, middle
+        edge.count += 1
+        if least < edge.least:
+            edge.least, edge.time = least, middle
         if least <= max(tolerance, MARGIN):
             if least < -MARGIN:
-                found.states[k] = TOUCHED
+                edge.state = TOUCHED
             return
-    found.states[k] = PROVEN
+    edge.state = PROVEN
+
+
+@kernel
+def longest(ways: Array) -> float:
+    """Largest of some lengths."""
+    result = 0.0
+    for i in range(len(ways)):
+        result = max(result, ways[i])
+    return result

@@ -13,36 +13,29 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, Records
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.dynamics.kernels.bodies import LinkStates, norm_of
-from ffsr_plan.robots.kinematics import Bodies
+from ffsr_plan.dynamics.kernels.bodies import norm_of
 
+LINK_BOUND = np.dtype(
+    [
+        ("distance", np.float64),
+        ("speed", np.float64),
+        ("acceleration", np.float64),
+        ("angular", np.float64),
+        ("angular_change", np.float64),
+        ("center", np.float64, 3),
+    ]
+)
+"""Bounds over one interval on the motion of a link relative to the base.
 
-class LinkBounds(NamedTuple):
-    """Bounds over one interval on the motion of n links relative to the base.
-
-    Attributes:
-        distances: (n,) of the link origins from the base origin [m].
-        speeds: (n,) of the link origins [m].
-        accelerations: (n,) norms for the link origins [m].
-        angular: (n,) angular speeds [rad].
-        angular_changes: (n,) norms of the angular accelerations [rad].
-    """
-
-    distances: Array
-    speeds: Array
-    accelerations: Array
-    angular: Array
-    angular_changes: Array
-
-
-@kernel
-def link_bounds(count: int) -> LinkBounds:
-    """Memory for `count` links."""
-    return LinkBounds(
-        np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count)
-    )
+    distance        of the link's origin from the base origin [m]
+    speed           of the link's origin [m]
+    acceleration    norm for the link's origin [m]
+    angular         angular speed [rad]
+    angular_change  norm of the angular acceleration [rad]
+    center          (3,) distance, speed and acceleration of the link's centre of mass [m]
+"""
 
 
 @kernel
@@ -53,24 +46,25 @@ def _longer(x: float, y: float, z: float, u: float, v: float, w: float) -> float
 
 @kernel
 def bound_links(
-    bodies: Bodies, values: Array, rates: Array, half: float, states: LinkStates, bounds: LinkBounds
+    bodies: Records, values: Array, rates: Array, half: float, links: Records, bounds: Records
 ) -> None:
     """Bounds over an interval with constant joint rates.
 
     Args:
-        bodies: the links.
+        bodies: (n,) the links, `BODY`.
         values: (nd,) joint values at its middle [rad or m].
         rates: (nd,) change over a whole edge [rad or m].
         half: half its length, in units of edge time.
-        states: the links, moved to the middle.
-        bounds: filled in.
+        links: (n,) `LINK_STATE`, moved to the middle.
+        bounds: (n,) `LINK_BOUND`, filled in but for the centres.
     """
-    for j in range(1, len(bodies.parents)):
-        p, rate, slides = bodies.parents[j], abs(rates[j - 1]), bodies.prismatic[j]
-        angular, change = bounds.angular[p], bounds.angular_changes[p]
+    for j in range(1, len(bodies)):
+        parent, rate, slides = bodies[j].parent, abs(rates[j - 1]), bodies[j].prismatic
+        above, own, link = bounds[parent], bounds[j], links[j]
+        angular, change = above.angular, above.angular_change
         # the distance from the parent's origin is a convex function of the joint value
         low, high = values[j - 1] - half * rates[j - 1], values[j - 1] + half * rates[j - 1]
-        a, b = bodies.offsets[j], bodies.slides[j]
+        a, b = bodies[j].offset, bodies[j].slide
         offset = _longer(
             a[0] + low * b[0],
             a[1] + low * b[1],
@@ -80,28 +74,23 @@ def bound_links(
             a[2] + high * b[2],
         )
         # |w_p x s_j|: the component of the parent's angular velocity across the joint's axis
-        across = min(angular, _across(bodies, j, states) + half * change)
+        across = _across(link.rotation, bodies[j].axis, links[parent].angular)
+        across = min(angular, across + half * change)
         turning, sliding = (0.0, rate) if slides else (rate, 0.0)
-        bounds.angular_changes[j] = change + across * turning
-        bounds.angular[j] = min(
-            angular + turning, norm_of(states.angular[j]) + half * bounds.angular_changes[j]
+        own.angular_change = change + across * turning
+        own.angular = min(angular + turning, norm_of(link.angular) + half * own.angular_change)
+        own.acceleration = (
+            above.acceleration + (change + angular * angular) * offset + 2.0 * across * sliding
         )
-        bounds.accelerations[j] = (
-            bounds.accelerations[p] + (change + angular * angular) * offset + 2.0 * across * sliding
+        own.speed = min(
+            above.speed + angular * offset + sliding, norm_of(link.linear) + half * own.acceleration
         )
-        bounds.speeds[j] = min(
-            bounds.speeds[p] + angular * offset + sliding,
-            norm_of(states.linear[j]) + half * bounds.accelerations[j],
-        )
-        bounds.distances[j] = min(
-            bounds.distances[p] + offset, norm_of(states.origins[j]) + half * bounds.speeds[j]
-        )
+        own.distance = min(above.distance + offset, norm_of(link.origin) + half * own.speed)
 
 
 @kernel
-def _across(bodies: Bodies, j: int, states: LinkStates) -> float:
-    """|w_p x s_j| at the middle, with the parent p and the axis s_j of link j."""
-    turned, axis, w = states.rotations[j], bodies.axes[j], states.angular[bodies.parents[j]]
+def _across(turned: Array, axis: Array, w: Array) -> float:
+    """|w x R s| for an angular velocity w, a rotation R (3, 3) and an axis s."""
     x = turned[0, 0] * axis[0] + turned[0, 1] * axis[1] + turned[0, 2] * axis[2]
     y = turned[1, 0] * axis[0] + turned[1, 1] * axis[1] + turned[1, 2] * axis[2]
     z = turned[2, 0] * axis[0] + turned[2, 1] * axis[1] + turned[2, 2] * axis[2]
@@ -132,32 +121,28 @@ class Point(NamedTuple):
 
 
 @kernel
-def bound_point(
-    link: int, place: Array, half: float, states: LinkStates, bounds: LinkBounds
-) -> Point:
+def bound_point(j: int, place: Array, half: float, links: Records, bounds: Records) -> Point:
     """Motion and bounds of a point.
 
     Args:
-        link: the link that carries it.
+        j: the link that carries it.
         place: (3,) in the frame of the link [m].
         half: half the length of the interval.
-        states: the links at the middle.
-        bounds: of the links over the interval.
+        links: (n,) `LINK_STATE` at the middle.
+        bounds: (n,) `LINK_BOUND` over the interval.
     """
-    turned, origin = states.rotations[link], states.origins[link]
-    w, v = states.angular[link], states.linear[link]
+    turned, origin, own = links[j].rotation, links[j].origin, bounds[j]
+    w, v = links[j].angular, links[j].linear
     x = turned[0, 0] * place[0] + turned[0, 1] * place[1] + turned[0, 2] * place[2]
     y = turned[1, 0] * place[0] + turned[1, 1] * place[1] + turned[1, 2] * place[2]
     z = turned[2, 0] * place[0] + turned[2, 1] * place[1] + turned[2, 2] * place[2]
     vx, vy, vz = v[0] + w[1] * z - w[2] * y, v[1] + w[2] * x - w[0] * z, v[2] + w[0] * y - w[1] * x
     x, y, z = origin[0] + x, origin[1] + y, origin[2] + z
-    length, angular = norm_of(place), bounds.angular[link]
-    acceleration = (
-        bounds.accelerations[link] + (bounds.angular_changes[link] + angular * angular) * length
-    )
+    length, angular = norm_of(place), own.angular
+    acceleration = own.acceleration + (own.angular_change + angular * angular) * length
     speed = min(
-        bounds.speeds[link] + angular * length,
+        own.speed + angular * length,
         math.sqrt(vx * vx + vy * vy + vz * vz) + half * acceleration,
     )
-    distance = min(bounds.distances[link] + length, math.sqrt(x * x + y * y + z * z) + half * speed)
+    distance = min(own.distance + length, math.sqrt(x * x + y * y + z * z) + half * speed)
     return Point(x, y, z, vx, vy, vz, distance, speed, acceleration)

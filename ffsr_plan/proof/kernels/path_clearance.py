@@ -2,15 +2,44 @@
 
 from __future__ import annotations
 
-import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.proof.kernels.course import Course, Memory, measure, memory_for, travel_of_shapes
+from ffsr_plan.proof.kernels.course import Course, Memory, measure, travel_of_shapes
+from ffsr_plan.proof.kernels.edge_proof import set_step
 
 _MOST_PARTS = 1024  # of an edge; with more the bound stays what it is by then
+
+PART = np.dtype(
+    [("begin", np.float64), ("end", np.float64), ("bound", np.float64), ("start", np.int64)]
+)
+"""A part of an edge: part k ends at row k + 1 of the distances.
+
+    begin, end  times, in [0, 1]
+    bound       on the clearance all along it [m]
+    start       row of the distances at its start
+"""
+
+
+class Parts(NamedTuple):
+    """Memory for the parts of an edge with g shapes.
+
+    Attributes:
+        parts: (_MOST_PARTS + 1,) records of `PART`.
+        distances: (_MOST_PARTS + 2, g) of the shapes [m].
+    """
+
+    parts: Records
+    distances: Array
+
+
+def parts_for(course: Course) -> Parts:
+    """Memory for the edges of a course."""
+    distances = np.empty((_MOST_PARTS + 2, len(course.shapes)))
+    return Parts(records(PART, _MOST_PARTS + 1), distances)
 
 
 @kernel
@@ -21,6 +50,8 @@ def path_clearance(
     clearances: Array,
     rounding: float,
     precision: float,
+    memory: Memory,
+    parts: Parts,
 ) -> float:
     """A proven lower bound on the clearance along a path.
 
@@ -34,69 +65,65 @@ def path_clearance(
         clearances: (m + 1,) clearances at the nodes [m].
         rounding: length added to every travel bound [m].
         precision: relative precision of the bound, between 0 and 1.
+        memory: scratch memory.
+        parts: scratch memory.
 
     Returns:
         The bound [m].
     """
-    shapes, memory = len(course.shapes.kinds), memory_for(course)
-    bound = least = float(np.min(clearances))
-    step, distances = np.empty(3), np.empty((_MOST_PARTS + 2, shapes))
-    parts = np.empty((_MOST_PARTS + 1, 3))  # begin, end and bound; part k ends at row k + 1
-    starts = np.empty(_MOST_PARTS + 1, np.int64)  # and starts at this row
+    least, distances = clearances[0], parts.distances
     for layer in range(len(speeds)):
-        length, tail, head = 0.0, offsets[layer], offsets[layer + 1]
-        for a in range(3):
-            along = course.positions[layer + 1, a] - course.positions[layer, a]
-            step[a] = 0.0 if course.base.floats else along + head[a] - tail[a]
-            length += step[a] * step[a]
-        speed, ends = math.sqrt(length) + speeds[layer], clearances[layer] + clearances[layer + 1]
+        least = min(least, clearances[layer + 1])
+    bound = least
+    for layer in range(len(speeds)):
+        tail, head = offsets[layer], offsets[layer + 1]
+        speed = set_step(course, layer, tail, head, memory) + speeds[layer]
+        ends = clearances[layer] + clearances[layer + 1]
         lowest = 0.5 * (ends - speed - rounding)
         if least - lowest > max(precision * least, rounding):
             measure(course, layer, 0.0, tail, memory, distances[0])
             measure(course, layer, 1.0, head, memory, distances[1])
-            parts[0], starts[0] = (0.0, 1.0, 0.0), 0
-            lowest, least = _refined(
-                course, layer, (tail, head, step), (rounding, precision, speed), least, memory,
-                distances, parts, starts,
-            )  # fmt: skip
+            numbers = rounding, precision, speed
+            lowest, least = _refined(course, layer, tail, head, numbers, least, memory, parts)
         bound = min(bound, lowest)
-    return float(min(bound, least))
+    return min(bound, least)
 
 
 @kernel
 def _refined(
     course: Course,
     layer: int,
-    offsets: tuple[Array, Array, Array],
+    tail: Array,
+    head: Array,
     numbers: tuple[float, float, float],
     least: float,
     memory: Memory,
-    distances: Array,
-    parts: Array,
-    starts: IntArray,
+    parts: Parts,
 ) -> tuple[float, float]:
     """Lowest bound over the parts of an edge, and the least clearance met so far."""
-    tail, head, step = offsets
     rounding, precision, speed = numbers
-    shift, ways, count = np.empty(3), np.empty(distances.shape[1]), 1
-    _bound_part(course, layer, 0, step, rounding, speed, memory, distances, parts, starts, ways)
+    shift, rows, distances, count = memory.vectors[2], parts.parts, parts.distances, 1
+    rows[0].begin, rows[0].end, rows[0].start = 0.0, 1.0, 0
+    _bound_part(course, layer, rows[0], distances[1], rounding, speed, memory, distances)
     while True:
-        k = int(np.argmin(parts[:count, 2]))
-        lowest = parts[k, 2]
+        k = 0
+        for other in range(1, count):
+            if rows[other].bound < rows[k].bound:
+                k = other
+        lowest, part = rows[k].bound, rows[k]
         if least - lowest <= max(precision * least, rounding) or count > _MOST_PARTS - 1:
             return lowest, least
-        begin, end = parts[k, 0], parts[k, 1]
-        middle = 0.5 * (begin + end)
+        middle = 0.5 * (part.begin + part.end)
         for a in range(3):
             shift[a] = (1.0 - middle) * tail[a] + middle * head[a]
         # the earlier half is new and ends at a new row; the later half keeps the end it had
         least = min(least, measure(course, layer, middle, shift, memory, distances[count + 1]))
-        parts[count] = begin, middle, 0.0
-        starts[count], starts[k], parts[k, 0] = starts[k], count + 1, middle
+        earlier = rows[count]
+        earlier.begin, earlier.end, earlier.start = part.begin, middle, part.start
+        part.begin, part.start = middle, count + 1
         for half in (k, count):
-            _bound_part(
-                course, layer, half, step, rounding, speed, memory, distances, parts, starts, ways
-            )
+            last = distances[half + 1]
+            _bound_part(course, layer, rows[half], last, rounding, speed, memory, distances)
         count += 1
 
 
@@ -104,22 +131,19 @@ def _refined(
 def _bound_part(
     course: Course,
     layer: int,
-    k: int,
-    step: Array,
+    part: Any,  # noqa: ANN401 - one record of PART
+    last: Array,
     rounding: float,
     speed: float,
     memory: Memory,
     distances: Array,
-    parts: Array,
-    starts: IntArray,
-    ways: Array,
 ) -> None:
-    """Fill in the bound of part `k`: each shape's own, or that of the least distances."""
-    begin, end = parts[k, 0], parts[k, 1]
-    first, last = distances[starts[k]], distances[k + 1]
-    travel_of_shapes(course, layer, begin, end, step, memory, ways)
-    bound = np.inf
+    """Fill in the bound of a part: each shape's own, or that of the least distances."""
+    ways, first = memory.ways, distances[part.start]
+    travel_of_shapes(course, layer, part.begin, part.end, memory, ways)
+    bound, start, end = np.inf, np.inf, np.inf
     for i in range(len(ways)):
         bound = min(bound, 0.5 * (first[i] + last[i] - ways[i] - rounding))
-    together = 0.5 * (first.min() + last.min() - (end - begin) * speed - rounding)
-    parts[k, 2] = max(bound, together)
+        start, end = min(start, first[i]), min(end, last[i])
+    together = 0.5 * (start + end - (part.end - part.begin) * speed - rounding)
+    part.bound = max(bound, together)

@@ -18,42 +18,54 @@ the proof.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import (
-    LinkStates,
+    ROBOT_STATE,
     base_rate,
     link_states,
     move_links,
     norm_of,
+    total_mass,
+    turn_vector,
     weigh_links,
 )
-from ffsr_plan.proof.kernels.link_bounds import (
-    LinkBounds,
-    Point,
-    bound_links,
-    bound_point,
-    link_bounds,
+from ffsr_plan.proof.kernels.link_bounds import LINK_BOUND, Point, bound_links, bound_point
+
+HULL_POINT = np.dtype([("link", np.int64), ("place", np.float64, 3)])
+"""A corner of the hull that contains a shape.
+
+    link    the link that carries it
+    place   (3,) in the frame of the link [m]
+"""
+
+TRAVEL = np.dtype(
+    [
+        ("velocity", np.float64, 3),
+        ("speed", np.float64),
+        ("curvature", np.float64),
+        ("attitude_error", np.float64),
+    ]
 )
-from ffsr_plan.robots.kinematics import Bodies
+"""The travel bound of a point over an interval for any displacement of the base.
 
+    velocity        (3,) at the middle relative to the base origin, world axes [m]
+    speed           bound on the norm of that velocity over the interval [m]
+    curvature       length that a change of velocity can add, A h^2 / 4 [m]
+    attitude_error  length that the error of the attitude can add [m]
+"""
 
-class HullPoints(NamedTuple):
-    """P points whose hulls contain the g collision shapes.
+BASE_STATE = np.dtype([("center", np.float64, 9), ("rotation", np.float64, (3, 3))])
+"""Of the base at the middle of an interval.
 
-    Attributes:
-        links: (P,) the link that carries each point.
-        places: (P, 3) in the frames of their links [m].
-        first: (g + 1,) index of the first point of each shape, and P.
-    """
-
-    links: IntArray
-    places: Array
-    first: IntArray
+    center      (9,) position [m] and velocity [m] of the centre of mass in the base, and the mean
+                of the bounds on the links' centres of mass; zeros unless the base floats
+    rotation    (3, 3) attitude
+"""
 
 
 class BaseMotion(NamedTuple):
@@ -63,67 +75,36 @@ class BaseMotion(NamedTuple):
         reacts: whether its rotation keeps the angular momentum at zero; otherwise it turns.
         floats: whether the centre of mass is at rest, so that the base step is zero, instead of the
             base origin moving linearly.
-        turn: (3,) angular velocity of a base that does not react, base axes [rad].
+        turn: angular velocity (x, y, z) of a base that does not react, base axes [rad].
         error: bound on the error of any attitude [rad].
     """
 
     reacts: bool
     floats: bool
-    turn: Array
+    turn: tuple[float, float, float]
     error: float
-
-
-class Travel(NamedTuple):
-    """The travel bound over K intervals for any displacement of the base.
-
-    Attributes:
-        velocity: (K, P, 3) at the middle relative to the base origin, world axes [m].
-        speed: (K, P) bound on the norm of that velocity over the interval [m].
-        curvature: (K, P) length that a change of velocity can add, A h^2 / 4 [m].
-        attitude_error: (K, P) length that the error of the attitude can add [m].
-        lengths: (K,) h, in units of edge time.
-    """
-
-    velocity: Array
-    speed: Array
-    curvature: Array
-    attitude_error: Array
-    lengths: Array
 
 
 class Scratch(NamedTuple):
     """Memory for one interval.
 
     Attributes:
-        states: the links at the middle.
-        bounds: of the links over the interval.
-        centers: (n, 3) bounds on distance [m], speed [m] and acceleration [m] of the links' centres
-            of mass.
-        rate: (3,) angular velocity of the base at the middle, base axes [rad].
-        mean: (9,) position [m] and velocity [m] of the centre of mass in the base, and the mean of
-            `centers`; zeros unless the base floats.
-        rotation: (3, 3) attitude of the base.
+        links: (n,) records of `LINK_STATE`, at the middle.
+        bounds: (n,) of `LINK_BOUND`, over the interval.
+        robot: (1,) of `ROBOT_STATE`.
+        base: (1,) of `BASE_STATE`.
     """
 
-    states: LinkStates
-    bounds: LinkBounds
-    centers: Array
-    rate: Array
-    mean: Array
-    rotation: Array
+    links: Records
+    bounds: Records
+    robot: Records
+    base: Records
 
 
-@kernel
 def scratch_for(count: int) -> Scratch:
     """Memory for `count` links."""
-    return Scratch(
-        link_states(count),
-        link_bounds(count),
-        np.zeros((count, 3)),
-        np.zeros(3),
-        np.zeros(9),
-        np.zeros((3, 3)),
-    )
+    robot, base = records(ROBOT_STATE, 1), records(BASE_STATE, 1)
+    return Scratch(link_states(count), records(LINK_BOUND, count), robot, base)
 
 
 class BaseBounds(NamedTuple):
@@ -139,35 +120,35 @@ class BaseBounds(NamedTuple):
 
 
 @kernel
-def bound_reaction(bodies: Bodies, half: float, scratch: Scratch) -> BaseBounds:
+def bound_reaction(bodies: Records, half: float, scratch: Scratch) -> BaseBounds:
     """Bounds on the rotation of a base that keeps the angular momentum at zero.
 
     I omega + l = 0, with the locked inertia I and the links' angular momentum l relative to the
     base, both about the centre of mass; their rates of change are bounded term by term.
 
     Args:
-        bodies: the links.
+        bodies: (n,) the links, `BODY`.
         half: half the length of the interval.
         scratch: the links at the middle, weighed, and their bounds; the rate is filled in.
     """
-    states, bounds, centers = scratch.states, scratch.bounds, scratch.centers
-    base_rate(states, scratch.rate)
-    mass, mean = np.sum(bodies.masses), 0.0
-    for j in range(len(bodies.masses)):
-        mean += bodies.masses[j] / mass * centers[j, 1]
+    links, bounds, robot = scratch.links, scratch.bounds, scratch.robot
+    base_rate(robot)
+    mass, mean = total_mass(bodies), 0.0
+    for j in range(len(bodies)):
+        mean += bodies[j].mass / mass * bounds[j].center[1]
     inertia_change, momentum_change, energy, own = 0.0, 0.0, 0.0, 0.0
-    for j in range(len(bodies.masses)):
-        weight, speed, angular = bodies.masses[j], centers[j, 1], bounds.angular[j]
-        pull = (1.0 - 2.0 * weight / mass) * speed + mean
-        leverage = weight * (norm_of(states.arms[j]) + half * pull)
-        least, largest = bodies.moments[j, 0], bodies.moments[j, 1]
-        inertia_change += (largest - least) * angular + 2.0 * leverage * speed
+    for j in range(len(bodies)):
+        weight, center, angular = bodies[j].mass, bounds[j].center, bounds[j].angular
+        pull = (1.0 - 2.0 * weight / mass) * center[1] + mean
+        leverage = weight * (norm_of(links[j].arm) + half * pull)
+        least, largest = bodies[j].moments[0], bodies[j].moments[1]
+        inertia_change += (largest - least) * angular + 2.0 * leverage * center[1]
         momentum_change += 0.5 * (largest - least) * angular * angular
-        momentum_change += largest * bounds.angular_changes[j] + leverage * centers[j, 2]
-        energy += weight * speed * speed + largest * angular * angular
+        momentum_change += largest * bounds[j].angular_change + leverage * center[2]
+        energy += weight * center[1] * center[1] + largest * angular * angular
         own += least
-    inertia = max(least_eigenvalue(states.inertia) - half * inertia_change, own)
-    now = norm_of(scratch.rate)
+    inertia = max(least_eigenvalue(robot[0].inertia) - half * inertia_change, own)
+    now = norm_of(robot[0].rate)
     fastest = now + half * (momentum_change + inertia_change * now) / inertia
     fastest = min(fastest, math.sqrt(energy / inertia))
     return BaseBounds(fastest, (momentum_change + inertia_change * fastest) / inertia)
@@ -205,50 +186,51 @@ def least_eigenvalue(entries: Array) -> float:
 
 @kernel
 def bound_travel(
-    bodies: Bodies,
-    points: HullPoints,
+    bodies: Records,
+    points: Records,
     values: Array,
     rates: Array,
     length: float,
     base: BaseMotion,
     quat: Array,
-    row: int,
     scratch: Scratch,
-    out: Travel,
+    travel: Records,
 ) -> None:
     """The travel bound over one interval.
 
     Args:
-        bodies: the links.
-        points: of the collision shapes.
+        bodies: (n,) the links, `BODY`.
+        points: (P,) of the collision shapes, `HULL_POINT`.
         values: (nd,) joint values at the middle of the interval [rad or m].
         rates: (nd,) their change over a whole edge [rad or m].
         length: of the interval, in units of edge time.
         base: what the base does.
         quat: (4,) attitude of the base at the middle (xyzw).
-        row: of the result.
         scratch: filled in.
-        out: that row is filled in.
+        travel: (P,) records of `TRAVEL`, filled in.
     """
-    half, states, bounds = 0.5 * length, scratch.states, scratch.bounds
-    move_links(bodies, values, rates, states)
-    bound_links(bodies, values, rates, half, states, bounds)
-    turning = BaseBounds(norm_of(base.turn), 0.0)
-    scratch.rate[:] = base.turn
-    scratch.mean[:] = 0.0
+    half, links, bounds, robot = 0.5 * length, scratch.links, scratch.bounds, scratch.robot
+    move_links(bodies, values, rates, links)
+    bound_links(bodies, values, rates, half, links, bounds)
+    x, y, z = base.turn
+    robot[0].rate[0], robot[0].rate[1], robot[0].rate[2] = x, y, z
+    turning, mean = BaseBounds(math.sqrt(x * x + y * y + z * z), 0.0), scratch.base[0].center
+    for a in range(9):
+        mean[a] = 0.0
     if base.reacts:
-        weigh_links(bodies, states)
-        for j in range(len(bodies.masses)):
-            center = bound_point(j, bodies.levers[j], half, states, bounds)
-            scratch.centers[j] = center.distance, center.speed, center.acceleration
+        weigh_links(bodies, links, robot)
+        for j in range(len(bodies)):
+            center = bound_point(j, bodies[j].lever, half, links, bounds)
+            own = bounds[j].center
+            own[0], own[1], own[2] = center.distance, center.speed, center.acceleration
         turning = bound_reaction(bodies, half, scratch)
     if base.floats:
-        _move_center(bodies, scratch)
-    fill_matrix(quat, scratch.rotation)
-    out.lengths[row] = length
-    for k in range(len(points.links)):
-        point = bound_point(points.links[k], points.places[k], half, states, bounds)
-        _bound_in_world(point, half, base, turning, scratch, row, k, out)
+        _move_center(bodies, links, bounds, mean)
+    rotation, rate = scratch.base[0].rotation, robot[0].rate
+    fill_matrix(quat, rotation)
+    for k in range(len(points)):
+        point = bound_point(points[k].link, points[k].place, half, links, bounds)
+        _bound_in_world(point, half, base, turning, mean, rate, rotation, travel[k])
 
 
 @kernel
@@ -257,13 +239,12 @@ def _bound_in_world(
     half: float,
     base: BaseMotion,
     turning: BaseBounds,
-    scratch: Scratch,
-    row: int,
-    k: int,
-    out: Travel,
+    mean: Array,
+    w: Array,
+    rotation: Array,
+    travel: Any,  # noqa: ANN401 - one record of TRAVEL
 ) -> None:
-    """The travel bound of one point, number `k`."""
-    mean, w, rotation = scratch.mean, scratch.rate, scratch.rotation
+    """The travel bound of one point."""
     x, y, z = point.x - mean[0], point.y - mean[1], point.z - mean[2]
     vx, vy, vz = point.vx - mean[3], point.vy - mean[4], point.vz - mean[5]
     acceleration = point.acceleration + mean[8]
@@ -274,68 +255,67 @@ def _bound_in_world(
     vx += w[1] * z - w[2] * y
     vy += w[2] * x - w[0] * z
     vz += w[0] * y - w[1] * x
-    for a in range(3):
-        out.velocity[row, k, a] = rotation[a, 0] * vx + rotation[a, 1] * vy + rotation[a, 2] * vz
+    turn_vector(travel.velocity, rotation, vx, vy, vz)
     acceleration += (turning.acceleration + turning.speed**2) * distance
     acceleration += 2.0 * turning.speed * speed
-    out.speed[row, k] = turning.speed * distance + speed
-    out.curvature[row, k] = half * half * acceleration
+    travel.speed = turning.speed * distance + speed
+    travel.curvature = half * half * acceleration
     now = math.sqrt(vx * vx + vy * vy + vz * vz)
-    out.attitude_error[row, k] = base.error * (2.0 * distance + 2.0 * half * now)
+    travel.attitude_error = base.error * (2.0 * distance + 2.0 * half * now)
 
 
 @kernel
-def _move_center(bodies: Bodies, scratch: Scratch) -> None:
-    """Fill in the mean over the bodies' centres of mass."""
-    mass, states, mean = np.sum(bodies.masses), scratch.states, scratch.mean
-    for j in range(len(bodies.masses)):
-        share, turned, lever = bodies.masses[j] / mass, states.rotations[j], bodies.levers[j]
+def _move_center(bodies: Records, links: Records, bounds: Records, mean: Array) -> None:
+    """Fill in the mean (9,) over the bodies' centres of mass."""
+    mass = total_mass(bodies)
+    for j in range(len(bodies)):
+        share, lever = bodies[j].mass / mass, bodies[j].lever
+        link, center, turned = links[j], bounds[j].center, links[j].rotation
         for a in range(3):
-            at = states.origins[j, a]
+            at = link.origin[a]
             at += turned[a, 0] * lever[0] + turned[a, 1] * lever[1] + turned[a, 2] * lever[2]
             mean[a] += share * at
-            mean[3 + a] += share * states.flows[j, a]
-            mean[6 + a] += share * scratch.centers[j, a]
+            mean[3 + a] += share * link.flow[a]
+            mean[6 + a] += share * center[a]
 
 
 @kernel
 def fill_matrix(quat: Array, rotation: Array) -> None:
     """The rotation matrix (3, 3) of a unit quaternion (4,)."""
     x, y, z, w = quat[0], quat[1], quat[2], quat[3]
-    rotation[0] = 1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)
-    rotation[1] = 2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)
-    rotation[2] = 2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)
+    a, b, c = rotation[0], rotation[1], rotation[2]
+    a[0], a[1], a[2] = 1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)
+    b[0], b[1], b[2] = 2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)
+    c[0], c[1], c[2] = 2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)
 
 
 @kernel
 def travels(
-    bodies: Bodies,
-    points: HullPoints,
+    bodies: Records,
+    points: Records,
     values: Array,
     rates: Array,
     lengths: Array,
     base: BaseMotion,
     quats: Array,
-) -> Travel:
+    scratch: Scratch,
+    travel: Records,
+) -> None:
     """The travel bound over K intervals.
 
     Args:
-        bodies: the links.
-        points: of the collision shapes.
+        bodies: (n,) the links, `BODY`.
+        points: (P,) of the collision shapes, `HULL_POINT`.
         values: (K, nd) joint values at the middles [rad or m].
         rates: (K, nd) their changes over whole edges [rad or m].
         lengths: (K,) of the intervals, in units of edge time.
         base: what the base does.
         quats: (K, 4) attitudes of the base at the middles (xyzw).
+        scratch: filled in.
+        travel: (K, P) records of `TRAVEL`, filled in.
     """
-    k, p = len(values), len(points.links)
-    out = Travel(
-        np.empty((k, p, 3)), np.empty((k, p)), np.empty((k, p)), np.empty((k, p)), np.empty(k)
-    )
-    scratch = scratch_for(len(bodies.parents))
-    for row in range(k):
+    for row in range(len(values)):
         bound_travel(
-            bodies, points, values[row], rates[row], lengths[row], base, quats[row], row, scratch,
-            out,
+            bodies, points, values[row], rates[row], lengths[row], base, quats[row], scratch,
+            travel[row],
         )  # fmt: skip
-    return out
