@@ -229,6 +229,8 @@ class _Sweep:
             if found.clearance is None or values[k] < found.clearance.value:
                 found.clearance = self._place(values[k], edge[which[k]], part[k])
         inner = np.flatnonzero(~outer)
+        if found.separation is not None:
+            inner = inner[values[inner] < found.separation.value]
         inner = inner[np.argsort(values[inner], kind="stable")]
         for begin in range(0, len(inner), _MEASURED_AT_ONCE):  # values are bounds here
             some = inner[begin : begin + _MEASURED_AT_ONCE]
