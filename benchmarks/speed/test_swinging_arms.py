@@ -45,20 +45,21 @@ def test_whole_plan(benchmark, swinging, reference, planner, refine):
     record(benchmark, reference)
 
 
-def afloat(seed, count):
-    """A path of eight edges of a UR5 on a satellite among `count` spheres, in free float."""
+def afloat(seed, count, edges=8):
+    """A path of a UR5 on a satellite among `count` spheres, in free float."""
     robot, rng = fp.load_scenario("inspection").robot, np.random.default_rng(seed)
     values = rng.uniform(-0.4, 0.4, (2, robot.nd)) + robot.joint_values(robot.neutral())
     start, goal = (robot.assemble(np.zeros(3), np.array([0, 0, 0, 1.0]), v) for v in values)
-    motion = Motion(robot, "free-floating", start, goal, np.zeros((9, 3)))
+    motion = Motion(robot, "free-floating", start, goal, np.zeros((edges + 1, 3)))
     ball = scatter(seed, (count, count), (-6.0, -6.0), (6.0, 6.0), (0.05, 0.1))
     away = np.abs(ball.centers[:, :2]).max(axis=1) > 3.5
     return motion, fp.Scene(ball.centers[away], ball.radii[away])
 
 
-def test_proof_of_an_arm_against_its_own_links(benchmark, reference):
-    """Eight edges, 66 pairs of links."""
-    motion, _ = afloat(0, 1)
+@pytest.mark.parametrize("edges", [1, 8])
+def test_proof_of_an_arm_against_its_own_links(benchmark, reference, edges):
+    """66 pairs of links on a long edge, and on the same cut into eight."""
+    motion, _ = afloat(0, 1, edges)
     Prover(motion, fp.Scene(), 1e-4).self_verdicts()
 
     def fresh():

@@ -65,6 +65,9 @@ class Kernel:
 
     @property
     def _numba_type_(self) -> object:
+        own = vars(self).get("dispatcher")
+        if own is not None and own.is_compiling:  # it calls itself
+            return own._numba_type_
         return self.inner_dispatcher._numba_type_
 
     def __call__(self, *arguments: object) -> Any:  # noqa: ANN401, D102 - as the function

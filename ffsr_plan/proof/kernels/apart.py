@@ -16,8 +16,8 @@ from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.proof.kernels.course import Course, Memory, place_shapes, travel_of_shapes
 from ffsr_plan.robots.shape_arrays import BOX
 
-DEEPEST = 5
-"""Halvings of an edge at most."""
+DEEPEST = 9
+"""Halvings of an edge at most: with these a long edge takes no longer than the same cut up."""
 _PARALLEL = 1e-6  # sine of the angle between edges below which their cross product is left out
 _MARGIN = 1e-8  # [m]
 
