@@ -13,15 +13,21 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from ffsr_plan.collision.nearest_sphere_kernels import nearest_pairs, nearest_to_each, pairs_below
+from ffsr_plan.collision.nearest_sphere_kernels import (
+    nearest_pairs_from,
+    nearest_to_each,
+    pairs_below,
+)
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.collision_shapes import sharpen
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
 _TOUCHING, _MOST_TOUCHING = 1e-9, 20_000  # [m] bound of pairs that may touch; pairs to be listed
+_AT_ONCE = 64  # configurations that are measured between two looks at the deadline
 
 
 class Nearest(NamedTuple):
@@ -49,14 +55,15 @@ class ObstacleQuery:
         count: number of configurations whose clearance Coal has measured.
     """
 
-    def __init__(self, robot: SpaceRobot, scene: Scene) -> None:
+    def __init__(self, robot: SpaceRobot, scene: Scene, deadline: Deadline | None = None) -> None:
         """Prepare the measurements.
 
         Args:
             robot: the robot.
             scene: the obstacles.
+            deadline: after which measurements raise `OutOfTime`.
         """
-        self._robot = robot
+        self._robot, self._deadline = robot, deadline or Deadline()
         self._links = [robot.link_of(shape) for shape in robot.collision_model.geometryObjects]
         self._tree, self._shapes = scene.tree, robot.primitives
         self._bounds_only = not bool(self._shapes.exact.all())
@@ -169,16 +176,45 @@ class ObstacleQuery:
         if self.empty:
             none = np.zeros(len(places), dtype=np.int64)
             return np.full(len(places), np.inf), none, none
-        self.count += len(places)
-        _, shape, sphere, local = nearest_pairs(
-            self._tree, self._shapes.kinds, placed.frames, places, shifts
-        )
-        least = self._measured(shape, sphere, local)
-        if self._bounds_only:
-            for k, place in enumerate(places):
-                pair = self._nearest_hull(placed, place, shifts[k], least[k], shape[k], sphere[k])
-                least[k], shape[k], sphere[k] = pair
+        found, which, row = [], 0, 0
+        for first in range(0, max(len(places), 1), _AT_ONCE):
+            self._deadline.check()
+            some = slice(first, first + _AT_ONCE)
+            _, shape, sphere, local = nearest_pairs_from(
+                self._tree,
+                self._shapes.kinds,
+                placed.frames,
+                places[some],
+                shifts[some],
+                which,
+                row,
+            )
+            if len(shape):
+                which, row = int(shape[-1]), int(sphere[-1])
+            self.count += len(shape)
+            least = self._measured(shape, sphere, local)
+            if self._bounds_only:
+                self._refine(placed, places[some], shifts[some], least, shape, sphere)
+            found.append((least, shape, sphere))
+        if len(found) == 1:
+            return found[0]
+        least, shape, sphere = (np.concatenate(parts) for parts in zip(*found, strict=True))
         return least, shape, sphere
+
+    def _refine(
+        self,
+        placed: Placements,
+        places: IntArray,
+        shifts: Array,
+        least: Array,
+        shape: IntArray,
+        sphere: IntArray,
+    ) -> None:
+        """Replace pairs, nearest by lower bounds, by the nearest ones."""
+        for k, place in enumerate(places):
+            self._deadline.check()
+            pair = self._nearest_hull(placed, place, shifts[k], least[k], shape[k], sphere[k])
+            least[k], shape[k], sphere[k] = pair
 
     def _measured(self, shape: IntArray, sphere: IntArray, local: Array) -> Array:
         """(n,) Coal's distances of shapes (n,) to spheres (n,) centred at `local` (n, 3).
@@ -236,8 +272,9 @@ class SelfQuery:
         count: number of configurations evaluated.
     """
 
-    def __init__(self, robot: SpaceRobot) -> None:
+    def __init__(self, robot: SpaceRobot, deadline: Deadline | None = None) -> None:
         self._robot, self._model = robot, robot.model
+        self._deadline = deadline or Deadline()
         self._geometry = robot.collision_model
         self._data = robot.model.createData()
         self._geometry_data = self._geometry.createData()
@@ -257,6 +294,7 @@ class SelfQuery:
         Returns:
             (p,) distances [m], negative in penetration.
         """
+        self._deadline.check()
         self.count += not self.empty
         data = self._geometry_data
         pin.computeDistances(self._model, self._data, self._geometry, data, q)
@@ -273,6 +311,7 @@ class SelfQuery:
         """
         if self.empty:
             return np.inf
+        self._deadline.check()
         self.count += 1
         data = self._geometry_data
         pair = pin.computeDistances(self._model, self._data, self._geometry, data, q)

@@ -9,6 +9,7 @@ import numpy as np
 from ffsr_plan.collision.contacts import named
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
 from ffsr_plan.core.contacts import Contact
+from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.errors import InvalidInput, NoPath
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
@@ -26,14 +27,20 @@ class Roadmap:
     """Nodes and edges of a lattice with their clearances and states.
 
     Attributes:
+        problem: what the lattice was built from.
+        deadline: after which whatever takes long raises `OutOfTime`.
         lattice: the lattice.
         prover: clearances and proofs for any offsets.
         nodes: clearances of the nodes, evaluated on demand.
         status: (m, n, n) state of each edge: UNKNOWN, FREE or REFUSED.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, deadline: Deadline | None = None) -> None:
         """Set up the lattice; nodes are evaluated when they are first needed.
+
+        Args:
+            problem: a problem without posture axes.
+            deadline: for this and all later work; none by default.
 
         Raises:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
@@ -47,9 +54,9 @@ class Roadmap:
                 len(problem.lattice.postures),
                 "none: with them a node has no single attitude, which a roadmap needs",
             )
-        self.problem = problem
+        self.problem, self.deadline = problem, deadline or Deadline()
         self.lattice = LayeredLattice(problem)
-        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)
+        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance, self.deadline)
         self.prover.check_ends()
         self.prover.check_self_collision(against_self_collision())
         self.nodes = NodeClearances(self.lattice, self.prover)
@@ -126,6 +133,10 @@ class Roadmap:
             self.certify(layer, int(path[layer]), int(path[layer + 1]))
         return bool(np.all(self.status[layers, path[:-1], path[1:]] == FREE))
 
+    def is_proven(self, path: IntArray) -> bool:
+        """Whether every edge of a path (m + 1,) is known to be free."""
+        return bool(np.all(self.status[np.arange(len(path) - 1), path[:-1], path[1:]] == FREE))
+
     def refused_layers(self, path: IntArray) -> IntArray:
         """The layers that a path leaves by a refused edge.
 
@@ -143,6 +154,7 @@ class Roadmap:
         prover, base_travel = self.prover, self.lattice.base_travel
         positive = np.where(self.admissible, self.clearances, np.nan)
         for i in range(self.lattice.divisions):
+            self.deadline.check()
             travel = base_travel + (prover.speeds[i] + prover.rounding)
             self.status[i][positive[i][:, None] + positive[i + 1] > travel] = FREE
 

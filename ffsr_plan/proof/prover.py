@@ -14,6 +14,7 @@ from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_coll
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
@@ -42,17 +43,24 @@ class Prover:
         rounding: length that is added to every travel bound [m].
     """
 
-    def __init__(self, nominal: Motion, scene: Scene, tolerance: float) -> None:
+    def __init__(
+        self,
+        nominal: Motion,
+        scene: Scene,
+        tolerance: float,
+        deadline: Deadline | None = None,
+    ) -> None:
         """Prepare the proofs.
 
         Args:
             nominal: the motion from which offsets are counted.
             scene: the obstacles.
             tolerance: clearance below which an edge may be refused [m].
+            deadline: after which distance queries, and so all proofs, raise `OutOfTime`.
         """
         self._motion, self._scene, self.tolerance = nominal, scene, tolerance
-        self._obstacles = ObstacleQuery(nominal.robot, scene)
-        self._self = SelfQuery(nominal.robot)
+        self._obstacles = ObstacleQuery(nominal.robot, scene, deadline)
+        self._self = SelfQuery(nominal.robot, deadline)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
         self._placements = NominalPlacements(nominal)
         self._corners = shape_placements(nominal.robot, nominal.configurations())

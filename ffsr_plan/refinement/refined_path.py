@@ -14,12 +14,12 @@ and a node lies on the rim of its offsets.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
+from ffsr_plan.core.deadline import Deadline, OutOfTime
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
@@ -93,9 +93,9 @@ def refined_path(
     offsets: Array,
     clearances: Array,
     nodes: NodeClearances | None = None,
-    stop_requested: Callable[[], bool] = bool,
-) -> RefinedPath | None:
-    """Move a proven path to where F of the whole motion is lower; None where it does not fall.
+    deadline: Deadline | None = None,
+) -> tuple[RefinedPath | None, bool]:
+    """Move a proven path to where F of the whole motion is lower.
 
     Offsets stay within the lattice's window, in steps of a sixteenth of its spacing.
 
@@ -105,28 +105,21 @@ def refined_path(
         offsets: (m + 1, 3) of the path [m].
         clearances: (m + 1,) at its nodes [m].
         nodes: clearances of the lattice's nodes as far as they are known; they save queries.
-        stop_requested: asked between rounds; whether to end with what has been reached.
+        deadline: when to end with what has been reached; that of `prover`.
+
+    Returns:
+        The path, None where F does not fall; and whether the deadline ended it early.
     """
     problem = lattice.problem
-    if not problem.lattice.axes or stop_requested():
-        return None  # with one node a layer there is no offset to change
-    descent = _Descent(lattice, prover, offsets, clearances)
-    before = descent.edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
-    descent.value = before
-    if problem.delta > 0.0 and nodes is not None:
-        descent.learn(nodes.known, nodes.bounds, lattice.indices)
-    for level in _levels(problem):
-        for _ in range(level.rounds):
-            if stop_requested():
-                break
-            band = descent.band(level)
-            measured = descent.measured(band)
-            search = BandSearch(problem, descent.edges, band, measured, descent.value)
-            path = search.best_path(level.candidates)
-            if path is None or not descent.take(band, measured, path, level):
-                break
-    if not descent.value < before:
-        return None
+    if not problem.lattice.axes:
+        return None, False  # with one node a layer there is no offset to change
+    descent, cut_short = _Descent(lattice, prover, offsets, clearances), False
+    try:
+        _descend(descent, lattice, nodes, deadline or Deadline())
+    except OutOfTime:
+        cut_short = True
+    if not descent.value < descent.value_before:
+        return None, cut_short
     moved = descent.coordinates @ descent.unit
     length = path_length(problem, moved)
     return RefinedPath(
@@ -135,7 +128,32 @@ def refined_path(
         length=length,
         objective=objective(problem, length, descent.clearances),
         counts=descent.counts(),
-    )
+    ), cut_short
+
+
+def _descend(
+    descent: _Descent, lattice: LayeredLattice, nodes: NodeClearances | None, deadline: Deadline
+) -> None:
+    """All levels of a refinement.
+
+    Raises:
+        OutOfTime: at the deadline; the descent stands where the last round took it.
+    """
+    problem = lattice.problem
+    deadline.check()
+    descent.measure()
+    if problem.delta > 0.0 and nodes is not None:
+        descent.learn(nodes.known, nodes.bounds, lattice.indices)
+    for level in _levels(problem):
+        for _ in range(level.rounds):
+            deadline.check()
+            band = descent.band(level)
+            measured = descent.measured(band)
+            deadline.check()
+            search = BandSearch(problem, descent.edges, band, measured, descent.value)
+            path = search.best_path(level.candidates)
+            if path is None or not descent.take(band, measured, path, level):
+                break
 
 
 class _Descent:
@@ -156,7 +174,12 @@ class _Descent:
         self.edges = EdgeClearances(lattice.problem, prover)
         self._queries_before, self._node_queries = prover.queries, 0
         self.clearances = np.array(clearances)
-        self.value = np.inf
+        self.value = self.value_before = np.inf
+
+    def measure(self) -> None:
+        """Work out F of the whole motion along the path as it is."""
+        place = self.coordinates @ self.unit
+        self.value = self.value_before = self.edges.motion_objective(place, self.clearances)
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""

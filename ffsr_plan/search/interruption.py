@@ -70,7 +70,10 @@ class Interruption:
         Args:
             request: the same without.
         """
-        return request._replace(stop_requested=lambda: self.pressed, begin=self.begin)
+        deadline = request.deadline
+        if deadline is not None:
+            deadline = deadline.stopped_by(lambda: self.pressed)
+        return request._replace(deadline=deadline, begin=self.begin)
 
     def _receive(self, number: int, frame: FrameType | None) -> None:
         again, self.pressed = self.pressed, True

@@ -8,17 +8,19 @@ it really leads to.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.rotations import slerp
+from ffsr_plan.core.rotations import angle_between, slerp
 from ffsr_plan.search.postures.annealing_kernels import anneal, uncosted_path
 from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
 from ffsr_plan.search.postures.ant_tour_kernels import cost_to_go, lay_pheromone, walk
-from ffsr_plan.search.postures.cost_kernels import PostureGrid, path_cost
+from ffsr_plan.search.postures.cost_kernels import PostureGrid, is_free, path_cost
+from ffsr_plan.search.postures.path_proof import CORRECTABLE
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import without_edge
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, Trails
@@ -67,7 +69,7 @@ class PostureColony:
         self._weights = np.array(settings.attitude_weights, dtype=np.float64)
         m, (postures, steps) = len(grid.rows) - 1, grid.successors.shape
         offsets = len(grid.across)
-        self._cost_to_go = cost_to_go(grid, _guiding_attitudes(lattice))
+        self._cost_to_go = cost_to_go(grid, _guiding_attitudes(lattice), lattice.deadline)
         self._offset_pheromone = np.ones((m, offsets, offsets))
         self._posture_pheromone = np.ones((m, postures, steps))
         self._walked = np.zeros((m, offsets, offsets), dtype=np.int64)
@@ -77,7 +79,7 @@ class PostureColony:
         self.best_cost = self.cost(self.best)
 
     def search(self, monitor: SearchMonitor) -> PosturePath:
-        """Run the ants, then the annealings. The monitor ends both early."""
+        """Run the ants, then the annealings. The monitor ends both early, and is told the best."""
         interrupted = self._run_ants(monitor) or self._run_annealings(monitor)
         history = History.of_rows(np.array(self._records, dtype=np.float64))
         return PosturePath(self.best, self.best_cost, history, self._trails(), interrupted)
@@ -85,6 +87,21 @@ class PostureColony:
     def cost(self, path: IntArray) -> float:
         """Cost of a path (m + 1, 2) [m]."""
         return float(path_cost(self.grid, uncosted_path(path), float(self._weights[1])))
+
+    def shortcomings(self, path: IntArray) -> str:
+        """What keeps a path (m + 1, 2) from being proven, at its nodes; empty where nothing does.
+
+        Args:
+            path: the path.
+        """
+        costed = uncosted_path(path)
+        path_cost(self.grid, costed, float(self._weights[1]))
+        if not np.all(costed.clearances[1:] > 0.0) and not is_free(self.grid):
+            return "is in collision at a node"
+        error = float(angle_between(costed.quats[-1], self.grid.goal))
+        if self.grid.reach_attitude and error > CORRECTABLE:
+            return f"misses the goal attitude by {math.degrees(error):.2g} degrees"
+        return ""
 
     def refuse(self, layer: int, path: IntArray) -> None:
         """Exclude the edge by which a path (m + 1, 2) leaves a layer."""
@@ -114,7 +131,7 @@ class PostureColony:
             shifts: number of segment shifts to try.
             hot: temperature at the beginning [m].
             cold: temperature at the end [m].
-            stop_requested: asked several times a second; whether to end with what there is.
+            stop_requested: asked every few milliseconds; whether to end with what there is.
         """
         return self._shifted(path, shifts, hot, cold, self._weights, stop_requested)
 
@@ -138,7 +155,7 @@ class PostureColony:
         settings, stale = self._settings, 0
         late_weights = np.full(2, self._weights[1])
         for _ in range(settings.cycles):
-            paths, costs = self._tours()
+            paths, costs = self._tours(monitor)
             if not paths:
                 break
             leader = paths[int(np.argmin(costs))]
@@ -157,15 +174,18 @@ class PostureColony:
                 self._lay(self.best if best_lays else improved)
             if stale >= settings.patience:
                 break
+            monitor.on_path(self.best)
             if monitor.expired():
                 return True
         return False
 
-    def _tours(self) -> tuple[list[IntArray], list[float]]:
+    def _tours(self, monitor: SearchMonitor) -> tuple[list[IntArray], list[float]]:
         """Paths of the ants that got to the goal, and their costs [m]."""
         m, paths, costs = len(self._walked), [], []
         layers = np.arange(m)
         for _ in range(self._settings.ants):
+            if monitor.expired():
+                break
             path = np.empty((m + 1, 2), dtype=np.int64)
             if walk(
                 self.grid,
@@ -198,6 +218,7 @@ class PostureColony:
             if cost < self.best_cost - _LEAST_GAIN:
                 self.best, self.best_cost = path, cost
             self._records.append((self.best_cost, cost, cost, 1))
+            monitor.on_path(self.best)
             if monitor.expired():
                 return True
         return False

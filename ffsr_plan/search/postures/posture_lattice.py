@@ -18,6 +18,7 @@ from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.core.cost_estimate import check_memory, check_work
+from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.kernels.compilation import notify_after
 from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.dynamics.momentum import centers_of_mass
@@ -41,6 +42,7 @@ class PostureLattice:
 
     Attributes:
         problem: what the lattice was built from.
+        deadline: after which whatever takes long raises `OutOfTime`.
         base: base offsets and the nominal motion, as on a lattice without posture axes.
         indices: (n, axes) index of each posture along each axis, 0 = not displaced.
         origin: the posture without displacement.
@@ -48,13 +50,17 @@ class PostureLattice:
         successors: (n, k) the postures within one step, -1 where there is none.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, deadline: Deadline | None = None) -> None:
         """Build the lattice.
+
+        Args:
+            problem: a problem with posture axes.
+            deadline: for this and for all arrays below; none by default.
 
         Raises:
             InvalidInput: it would take too much memory or computing time.
         """
-        self.problem = problem
+        self.problem, self.deadline = problem, deadline or Deadline()
         _check_size(problem)
         self.base = LayeredLattice(problem)
         axes = problem.lattice.postures
@@ -90,7 +96,7 @@ class PostureLattice:
         """(rows, n) postures within the joints' limits whose links keep clear of each other."""
         robot, values = self.problem.robot, self._distinct_values
         inside: Flags = np.all((values >= robot.lower) & (values <= robot.upper), axis=2)
-        query, apart = SelfQuery(robot), inside.copy()
+        query, apart = SelfQuery(robot, self.deadline), inside.copy()
         if not query.empty:
             for i, p in zip(*np.nonzero(inside), strict=True):
                 q = robot.assemble(np.zeros(3), IDENTITY, values[i, p])
@@ -118,6 +124,7 @@ class PostureLattice:
         parts = -(-len(chosen) // _STEPS_AT_ONCE)
         with notify_after(5.0, words):
             for part in range(parts):  # from all over the lattice: all need about as many substeps
+                self.deadline.check()
                 i, p, step = np.unravel_index(chosen[part::parts], exists.shape)
                 begin, on = self.joint_values[i, p], self.successors[p, step]
                 steps = self.joint_values[i + 1, on] - begin
@@ -139,6 +146,7 @@ class PostureLattice:
         displaced = self.joint_values - self.base.nominal.joint_values[:, None]
         result = np.empty((1 if self.alike else len(displaced) - 1, *self.successors.shape))
         for i, row in enumerate(result):
+            self.deadline.check()
             steps = displaced[i + 1, np.maximum(self.successors, 0)] - displaced[i, :, None]
             np.sum((steps * weights) ** 2, axis=2, out=row)
         return result
@@ -149,6 +157,7 @@ class PostureLattice:
         robot, values = self.problem.robot, self._distinct_values
         result = np.empty((*values.shape[:2], len(robot.primitives.kinds), 15))
         for row, own in zip(result, values, strict=True):
+            self.deadline.check()
             row[:] = shape_placements(robot, robot.assemble(np.zeros(3), IDENTITY, own)).frames
         return result
 
@@ -159,6 +168,7 @@ class PostureLattice:
         result = np.zeros((*values.shape[:2], 3))
         if self.base.nominal.mode.floats:
             for row, own in zip(result, values, strict=True):
+                self.deadline.check()
                 row[:] = centers_of_mass(robot, own)
         return result
 
@@ -170,13 +180,12 @@ class PostureLattice:
         axes = self.problem.lattice.postures
         number = {tuple(index): p for p, index in enumerate(self.indices.tolist())}
         steps = list(product((-1, 0, 1), repeat=len(axes)))
-        return np.array(
-            [
-                [number.get(tuple(a + b for a, b in zip(index, s, strict=True)), -1) for s in steps]
-                for index in self.indices.tolist()
-            ],
-            dtype=np.int64,
-        )
+        rows = []
+        for index in self.indices.tolist():
+            self.deadline.check()
+            beside = (tuple(a + b for a, b in zip(index, s, strict=True)) for s in steps)
+            rows.append([number.get(each, -1) for each in beside])
+        return np.array(rows, dtype=np.int64)
 
 
 def _check_size(problem: Problem) -> None:
