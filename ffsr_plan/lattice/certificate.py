@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.deadline import OutOfTime
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.proof.prover import Prover
 
 

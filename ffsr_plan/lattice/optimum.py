@@ -13,8 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import IntArray
-from ffsr_plan.core.deadline import OutOfTime
-from ffsr_plan.core.errors import InternalError
+from ffsr_plan.core.errors import InternalError, OutOfTime
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.lattice.shortest_path import LazyShortestPath
 from ffsr_plan.problem.objective import objective, path_length

@@ -9,7 +9,6 @@ import numpy as np
 from ffsr_plan.collision.contacts import named
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States, frozen
 from ffsr_plan.core.contacts import Contact
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.errors import InvalidInput, NoPath
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
@@ -21,6 +20,7 @@ from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict, certify
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.time_limit.deadline import Deadline
 
 
 class Roadmap:

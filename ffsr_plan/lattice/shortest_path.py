@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, States
-from ffsr_plan.core.deadline import Deadline
+from ffsr_plan.time_limit.deadline import Deadline
 
 _EDGES_AT_ONCE = 1_000_000  # that are evaluated between two looks at the deadline
 

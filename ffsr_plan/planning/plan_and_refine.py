@@ -11,7 +11,6 @@ from typing import Literal
 import numpy as np
 
 from ffsr_plan.core.checks import number, one_of, truth, whole_number
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.errors import AttitudeOutOfReach, GoalPoseIgnored, InvalidInput
 from ffsr_plan.core.kernels.compiling_time import Stopwatch
 from ffsr_plan.core.rotations import angle_between
@@ -24,6 +23,7 @@ from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
 from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
+from ffsr_plan.time_limit.deadline import Deadline
 
 _NOTABLE = 1e-4  # [rad] or [m]
 _HOW_TO_REACH_IT = (
@@ -46,11 +46,10 @@ def plan(
 ) -> Plan:
     """Plan a collision-free motion and certify it.
 
-    Ctrl-C and `time_limit` end all that is being done; the best path that has been proven by then
-    is returned, marked as `interrupted`. Whatever else is cut short: the optimum is then a lower
-    bound (`optimum_is_exact` is False), and the path less refined or not at all. Ctrl-C raises
-    KeyboardInterrupt where there is no plan yet, when it is pressed again, and in a call of `plan`
-    that begins within 2 s of such a return: a loop ends.
+    Ctrl-C and `time_limit` end whatever is being done, and the best path proven by then is
+    returned, `interrupted`; its optimum may be a lower bound. Ctrl-C raises KeyboardInterrupt where
+    there is no plan yet, when it is pressed again, and in a call of `plan` that begins within 2 s
+    of such a return: a loop ends.
 
     Args:
         problem: what to plan.
@@ -62,9 +61,8 @@ def plan(
             every lattice without posture axes, as with them paths are not refined.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
-        time_limit: [s] from the call to its return, which may be later by 5 % and 20 ms; compiling
-            and loading kernels at their first use does not count. With less than 3 s the colonies
-            run in this process. A limit that is not reached changes nothing in the plan.
+        time_limit: [s] from the call to its return, kept within 5 % and 20 ms. Compiling and
+            loading kernels at their first use does not count.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.
         on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
 
@@ -75,7 +73,7 @@ def plan(
         AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; `best` is
             the plan that misses it least.
         UnprovenPath: with posture axes, the path found could not be proven free.
-        OutOfTime: no path was proven free in time; the lattice may hold one all the same.
+        OutOfTime: no path was proven free in time.
         PlanningError: no path was found.
         WorkerDied: a worker process ended without a result.
     """

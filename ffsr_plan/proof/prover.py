@@ -14,7 +14,6 @@ from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_coll
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
@@ -28,6 +27,7 @@ from ffsr_plan.proof.motion_edges import (
 )
 from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.time_limit.deadline import Deadline
 
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
 _ITERATION_ERROR = 1e-7  # [m] for distances that Coal iterates to 1e-8
@@ -59,6 +59,8 @@ class Prover:
             deadline: after which distance queries, and so all proofs, raise `OutOfTime`.
         """
         self._motion, self._scene, self.tolerance = nominal, scene, tolerance
+        self._deadline = deadline or Deadline()
+        self._deadline.check()
         self._obstacles = ObstacleQuery(nominal.robot, scene, deadline)
         self._self = SelfQuery(nominal.robot, deadline)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
-from ffsr_plan.core.deadline import Deadline, OutOfTime
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
@@ -30,6 +30,7 @@ from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.band_search import NO_GAIN, BandSearch
 from ffsr_plan.refinement.edge_clearances import EdgeClearances
 from ffsr_plan.refinement.offset_band import OffsetBand
+from ffsr_plan.time_limit.deadline import Deadline
 
 _FINEST = 16
 _STEPS = (8, 4, 2, 1)  # of the levels, in sixteenths of the spacing

@@ -102,8 +102,10 @@ class Interruption:
             signal.signal(signal.SIGINT, self._handler)
         if not self.pressed:
             return
-        from ffsr_plan.core.errors import PlanningError  # with numpy, which a command loads later
+        from ffsr_plan.core.errors import OutOfTime, PlanningError  # with numpy: late on purpose
 
+        if isinstance(error, OutOfTime):
+            raise KeyboardInterrupt from None
         if isinstance(error, PlanningError) or (error is None and not self._returns):
             raise KeyboardInterrupt from error  # there is no plan to return, or it is not asked for
         if error is None:

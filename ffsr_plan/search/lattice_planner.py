@@ -8,8 +8,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import frozen
-from ffsr_plan.core.deadline import Deadline, OutOfTime
-from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
+from ffsr_plan.core.errors import FfsrPlanError, InvalidInput, OutOfTime
 from ffsr_plan.lattice.certificate import Certificate, Counts, proven_clearance
 from ffsr_plan.lattice.optimum import optimum_or_bound
 from ffsr_plan.lattice.roadmap import Roadmap
@@ -18,6 +17,7 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult, Solution
 from ffsr_plan.search.workers import in_process, run_on_workers
+from ffsr_plan.time_limit.deadline import Deadline
 
 
 class LatticePlanner(ABC):

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, equal_by_content, frozen
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.time_limit.deadline import Deadline
 
 
 @equal_by_content

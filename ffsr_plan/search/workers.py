@@ -11,18 +11,18 @@ import os
 import signal
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import wait
+from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.errors import WorkerDied
 from ffsr_plan.core.kernels import announcement
 from ffsr_plan.core.kernels.compiling_time import Stopwatch, add_compiled
 from ffsr_plan.search.records import SearchMonitor, SearchRequest
+from ffsr_plan.time_limit.deadline import Deadline
 
 Job = TypeVar("Job")
 Outcome = TypeVar("Outcome")
@@ -91,12 +91,7 @@ def run_on_workers(
                 for executor, share in zip(executors, shares, strict=True)
             ]
         request.begin()
-        while waiting := wait(futures, timeout=_POLL).not_done:
-            if deadline.stopped():
-                stop.set()
-            late = [k for k, future in enumerate(futures) if future in waiting]
-            if deadline.passed() and not any(begun[k].is_set() for k in late):
-                break  # those that have begun end by themselves
+        _wait(futures, begun, stop, deadline)
         outcomes: dict[int, Outcome] = {}
         compiling = 0.0
         for worker, (share, future) in enumerate(zip(shares, futures, strict=True)):
@@ -114,6 +109,16 @@ def run_on_workers(
     if not outcomes:
         deadline.check()
     return [outcomes[k] for k in sorted(outcomes)]
+
+
+def _wait(futures: list[Future[Any]], begun: list[Any], stop: Any, deadline: Deadline) -> None:  # noqa: ANN401 - of loky
+    """Wait for all that have begun: these end by themselves at the deadline."""
+    while waiting := wait(futures, timeout=_POLL).not_done:
+        if deadline.stopped():
+            stop.set()
+        late = [k for k, future in enumerate(futures) if future in waiting]
+        if deadline.passed() and not any(begun[k].is_set() for k in late):
+            return
 
 
 @contextmanager

@@ -7,14 +7,14 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
-from ffsr_plan.core.deadline import Deadline, OutOfTime
-from ffsr_plan.core.errors import InternalError
+from ffsr_plan.core.errors import InternalError, OutOfTime
 from ffsr_plan.core.setting_rules import Number, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.edge_states import REFUSED, UNKNOWN
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
+from ffsr_plan.time_limit.deadline import Deadline
 
 _LEAST_PHEROMONE = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
-from ffsr_plan.core.deadline import Deadline, OutOfTime
-from ffsr_plan.core.errors import InternalError, PlanningError
+from ffsr_plan.core.errors import InternalError, OutOfTime, PlanningError
 from ffsr_plan.core.setting_rules import Number, Truth, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
+from ffsr_plan.time_limit.deadline import Deadline
 
 if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colony runs
     from ffsr_plan.search.ants.max_min_kernels import State

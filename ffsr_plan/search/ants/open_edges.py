@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Flags, IntArray, States
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
+from ffsr_plan.time_limit.deadline import Deadline
 
 
 def find_open_edges(

@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.search.postures.cost_kernels import (
     PostureGrid,
@@ -18,6 +17,7 @@ from ffsr_plan.search.postures.cost_kernels import (
     node_cost,
     step_between,
 )
+from ffsr_plan.time_limit.deadline import Deadline
 
 _NODES_AT_ONCE = 1024  # of a layer, that are worked out between two looks at the deadline
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.time_limit.deadline import Deadline
 
 _DIFFERENCE = 1e-5  # of the finite differences, in units of the displacement
 _ITERATIONS = 20

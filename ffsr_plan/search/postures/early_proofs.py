@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ffsr_plan.core.arrays import IntArray
-from ffsr_plan.core.deadline import Deadline, OutOfTime
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.search.postures.colony import PostureColony
 from ffsr_plan.search.postures.path_proof import (
     PathProof,
@@ -19,6 +19,7 @@ from ffsr_plan.search.postures.path_proof import (
     prove_path,
 )
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
+from ffsr_plan.time_limit.deadline import Deadline
 
 _SEARCH_PER_PROOF = 4.0, 12.0
 """Time for the search after each proof, as a multiple of the time that the proof took: until one

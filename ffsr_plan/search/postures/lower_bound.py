@@ -13,7 +13,7 @@ import numpy as np
 
 from ffsr_plan.collision.nearest_sphere_kernels import nearest_pairs
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.deadline import OutOfTime
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.core.rotations import IDENTITY, angle_between
 from ffsr_plan.lattice.optimum import straight_bound
 from ffsr_plan.lattice.shortest_path import LazyShortestPath

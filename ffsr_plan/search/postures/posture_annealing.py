@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import ClassVar
 
 import numpy as np
 
 from ffsr_plan.core.arrays import IntArray, frozen
-from ffsr_plan.core.deadline import Deadline, OutOfTime
-from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput
+from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput, OutOfTime
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
-from ffsr_plan.search.postures.colony import PostureColony, PosturePath
+from ffsr_plan.search.postures.colony import AnnealingSettings, PostureColony, PosturePath
 from ffsr_plan.search.postures.early_proofs import EarlyProofs, ProvenPath
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import (
@@ -33,6 +32,7 @@ from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
 from ffsr_plan.search.records import History, SearchMonitor, SearchRequest, Solution
 from ffsr_plan.search.workers import in_process, run_on_workers
+from ffsr_plan.time_limit.deadline import Deadline
 
 _PROOF_ATTEMPTS = 25
 _SHIFTS_AFTER_REFUSAL = 500  # for each layer, in the annealing that goes on after a refused edge
@@ -149,12 +149,12 @@ def _prove(
         return False
     if result.interrupted and (missing := colony.shortcomings(path)):
         deadline.stage = f"the search, whose best path so far {missing}"
-    if deadline.stopped() and early is None:
-        deadline.ignore_stop()  # one proof, so that there is a plan to return
     shifts = _SHIFTS_AFTER_REFUSAL * lattice.problem.lattice.divisions
     for _ in range(_PROOF_ATTEMPTS):
-        proof = prove_path(lattice, *corners(lattice, path))
-        corrected, spent = corrected_proof(lattice, proof)
+        first = proofs.is_empty and early is None
+        with deadline.without_stop() if first else nullcontext():  # so that there is a plan
+            proof = prove_path(lattice, *corners(lattice, path))
+            corrected, spent = corrected_proof(lattice, proof)
         proofs.take(path, proof, corrected, proof.prover.queries + spent)
         if corrected.holds:
             return False

@@ -18,13 +18,13 @@ from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.core.cost_estimate import check_memory, check_work
-from ffsr_plan.core.deadline import Deadline
 from ffsr_plan.core.kernels.compilation import notify_after
 from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.time_limit.deadline import Deadline
 
 _BYTES_PER_STEP = 50  # rotation and squared length of a joint step, and its number
 _BYTES_PER_PHEROMONE = 8  # of a joint step on a layer

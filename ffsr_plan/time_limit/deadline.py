@@ -1,41 +1,18 @@
 """`Deadline`: when a call of `plan` has to end, asked wherever work takes long."""
-# ruff: noqa: N818 - the name is part of the public contract
 
 from __future__ import annotations
 
 import copy
 import math
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
-from ffsr_plan.core.errors import PlanningError
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.core.kernels.compiling_time import spent_on_kernels
 
-CLOSING_SHARE, CLOSING_SECONDS = 0.02, 0.01
+CLOSING_SHARE, CLOSING_SECONDS = 0.03, 0.015
 """Time for the certificate of a path that is proven, beyond the limit: a share of it, and [s]."""
-
-
-@dataclass(eq=False, repr=False)
-class OutOfTime(PlanningError):
-    """The time limit passed before any path was proven free; this does not prove that none exists.
-
-    Attributes:
-        time_limit: [s]; infinite where Ctrl-C ended the planning.
-        stage: what it ended.
-    """
-
-    time_limit: float
-    stage: str
-
-    def message(self) -> str:
-        """The limit, what it ended, and what may help."""
-        if math.isinf(self.time_limit):
-            return f"no path was proven free before Ctrl-C ended {self.stage}"
-        return (
-            f"no path was proven free within the time_limit of {self.time_limit:g} s, which ended "
-            f"{self.stage}; what may help: a longer time_limit; fewer divisions or offsets"
-        )
 
 
 class Deadline:
@@ -103,16 +80,21 @@ class Deadline:
         twin._stop_requested = stop_requested
         return twin
 
-    def ignore_stop(self) -> None:
-        """Ctrl-C has been noted: from now on only the time limit counts."""
-        self._stop_requested = bool
+    @contextmanager
+    def without_stop(self) -> Iterator[None]:
+        """In the body only the time limit counts; Ctrl-C does so after it."""
+        stop_requested, self._stop_requested = self._stop_requested, bool
+        try:
+            yield
+        finally:
+            self._stop_requested = stop_requested
 
     def close(self) -> None:
         """There is a path to return: its certificate may take a little longer than the limit."""
         now = self.elapsed()
         end = now if self.stopped() else max(self._end, now)
         self._end = end + CLOSING_SHARE * end + CLOSING_SECONDS
-        self.ignore_stop()
+        self._stop_requested = bool
 
     def handed_on(self) -> tuple[float, float]:
         """The limit, and the end by `time.monotonic`, which all processes of a computer share."""
