@@ -55,8 +55,8 @@ class Certificate(NamedTuple):
         return Counts(*self[:4])
 
 
-def proven_clearance(prover: Prover, offsets: Array, clearances: Array) -> float:
-    """Proven lower bound on the clearance along a path whose edges are free; 0 at the deadline.
+def proven_clearance(prover: Prover, offsets: Array, clearances: Array) -> tuple[float, bool]:
+    """Proven lower bound on the clearance along a path whose edges are free.
 
     Args:
         prover: proofs along the motion from which offsets are counted.
@@ -64,9 +64,9 @@ def proven_clearance(prover: Prover, offsets: Array, clearances: Array) -> float
         clearances: (m + 1,) clearances at the nodes [m].
 
     Returns:
-        The bound [m].
+        The bound [m], and whether the deadline cut it short, in which case it is 0.
     """
     try:
-        return prover.least_clearance(offsets, clearances)
+        return prover.least_clearance(offsets, clearances), False
     except OutOfTime:
-        return 0.0
+        return 0.0, True

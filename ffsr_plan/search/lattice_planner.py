@@ -112,7 +112,7 @@ class LatticePlanner(ABC):
         motion = lattice.nominal.displaced(offsets)
         roadmap.deadline.close()
         moved = motion.positions - lattice.nominal.positions
-        least = proven_clearance(prover, moved, clearances)
+        least, cut = proven_clearance(prover, moved, clearances)
         indices = lattice.indices[result.path]
         return Solution(
             lattice=lattice,
@@ -127,7 +127,7 @@ class LatticePlanner(ABC):
             history=result.history,
             trails=result.trails,
             certificate=Certificate(*counts, least, problem.robot.unchecked_links),
-            interrupted=result.interrupted or cut_short,
+            interrupted=result.interrupted or cut_short or cut,
         )
 
     def _search_by_colonies(

@@ -239,6 +239,7 @@ class _Proofs:
             least, queries = self._least or least_clearance(proof)
         except OutOfTime:
             least, queries = 0.0, 0
+            result = result._replace(interrupted=True)
         queries += self._queries
         nodes = m + 1 if np.isfinite(proof.clearances).all() else 0  # none in an empty scene
         certificate = Certificate(
