@@ -47,9 +47,8 @@ def plan(
     """Plan a collision-free motion and certify it.
 
     Ctrl-C and `time_limit` end whatever is being done, and the best path proven by then is
-    returned, `interrupted`; its optimum may be a lower bound. Ctrl-C raises KeyboardInterrupt where
-    there is no plan yet, when it is pressed again, and in a call of `plan` that begins within 2 s
-    of such a return: a loop ends.
+    returned, `interrupted`. Ctrl-C raises KeyboardInterrupt where there is no plan yet, when it is
+    pressed again, and in a call of `plan` that begins within 2 s of such a return: a loop ends.
 
     Args:
         problem: what to plan.
@@ -61,8 +60,7 @@ def plan(
             every lattice without posture axes, as with them paths are not refined.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
-        time_limit: [s] from the call to its return, kept within 5 % and 20 ms. Compiling and
-            loading kernels at their first use does not count.
+        time_limit: [s] from call to return, within 5 % and 20 ms; compiling does not count.
         on_cycle: called with a `Cycle` after each cycle; for a single colony.
         on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
 
@@ -73,8 +71,7 @@ def plan(
         AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; `best` is
             the plan that misses it least.
         UnprovenPath: with posture axes, the path found could not be proven free.
-        OutOfTime: no path was proven free in time.
-        PlanningError: no path was found.
+        PlanningError: no path was found; `OutOfTime` if none was proven in time.
         WorkerDied: a worker process ended without a result.
     """
     watch, deadline = Stopwatch(), _deadline(time_limit)

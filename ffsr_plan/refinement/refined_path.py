@@ -115,46 +115,25 @@ def refined_path(
     if not problem.lattice.axes:
         return None, False  # with one node a layer there is no offset to change
     descent, cut_short = _Descent(lattice, prover, offsets, clearances), False
+    deadline, edges, before = deadline or Deadline(), descent.edges, np.inf
     try:
-        _descend(descent, lattice, nodes, deadline or Deadline())
+        deadline.check()
+        before = edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
+        descent.value = before
+        if problem.delta > 0.0 and nodes is not None:
+            descent.learn(nodes.known, nodes.bounds, lattice.indices)
+        for level in _levels(problem):
+            for _ in range(level.rounds):
+                deadline.check()
+                band = descent.band(level)
+                measured = descent.measured(band)
+                search = BandSearch(problem, edges, band, measured, descent.value)
+                path = search.best_path(level.candidates)
+                if path is None or not descent.take(band, measured, path, level):
+                    break
     except OutOfTime:
         cut_short = True
-    if not descent.value < descent.value_before:
-        return None, cut_short
-    moved = descent.coordinates @ descent.unit
-    length = path_length(problem, moved)
-    return RefinedPath(
-        offsets=moved,
-        clearances=frozen(descent.clearances),
-        length=length,
-        objective=objective(problem, length, descent.clearances),
-        counts=descent.counts(),
-    ), cut_short
-
-
-def _descend(
-    descent: _Descent, lattice: LayeredLattice, nodes: NodeClearances | None, deadline: Deadline
-) -> None:
-    """All levels of a refinement.
-
-    Raises:
-        OutOfTime: at the deadline; the descent stands where the last round took it.
-    """
-    problem = lattice.problem
-    deadline.check()
-    descent.measure()
-    if problem.delta > 0.0 and nodes is not None:
-        descent.learn(nodes.known, nodes.bounds, lattice.indices)
-    for level in _levels(problem):
-        for _ in range(level.rounds):
-            deadline.check()
-            band = descent.band(level)
-            measured = descent.measured(band)
-            deadline.check()
-            search = BandSearch(problem, descent.edges, band, measured, descent.value)
-            path = search.best_path(level.candidates)
-            if path is None or not descent.take(band, measured, path, level):
-                break
+    return descent.result() if descent.value < before else None, cut_short
 
 
 class _Descent:
@@ -175,12 +154,19 @@ class _Descent:
         self.edges = EdgeClearances(lattice.problem, prover)
         self._queries_before, self._node_queries = prover.queries, 0
         self.clearances = np.array(clearances)
-        self.value = self.value_before = np.inf
+        self.value = np.inf
 
-    def measure(self) -> None:
-        """Work out F of the whole motion along the path as it is."""
-        place = self.coordinates @ self.unit
-        self.value = self.value_before = self.edges.motion_objective(place, self.clearances)
+    def result(self) -> RefinedPath:
+        """The path as it is."""
+        moved = self.coordinates @ self.unit
+        length = path_length(self._problem, moved)
+        return RefinedPath(
+            offsets=moved,
+            clearances=frozen(self.clearances),
+            length=length,
+            objective=objective(self._problem, length, self.clearances),
+            counts=self.counts(),
+        )
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""

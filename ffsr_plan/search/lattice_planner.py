@@ -17,7 +17,6 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult, Solution
 from ffsr_plan.search.workers import in_process, run_on_workers
-from ffsr_plan.time_limit.deadline import Deadline
 
 
 class LatticePlanner(ABC):
@@ -78,10 +77,8 @@ class LatticePlanner(ABC):
         """
         self.refuse(problem)
         check_lattice(problem, self.bytes_per_edge, getattr(self, "ants", 0))
-        deadline = request.deadline or Deadline()
-        deadline.stage = "the set-up of the lattice"
-        roadmap = Roadmap(problem, deadline)
-        deadline.stage = "the search for a path"
+        roadmap = Roadmap(problem, request.deadline)
+        roadmap.deadline.stage = "the search for a path"
         if self.exact:  # it has no path before it ends
             result, counts = self.search(roadmap, rng), roadmap.counts()
             request.begin()
@@ -90,18 +87,12 @@ class LatticePlanner(ABC):
             counts = roadmap.counts()
         else:
             result, counts = self._search_by_colonies(roadmap, rng, request)
-        return self._solution(roadmap, result, counts, request.refine is not False)
-
-    def _solution(
-        self, roadmap: Roadmap, result: SearchResult, counts: Counts, refine: bool
-    ) -> Solution:
-        """The path with its optimum, refined and certified, as far as the deadline allows."""
-        lattice, prover, problem = roadmap.lattice, roadmap.prover, roadmap.problem
+        lattice, prover = roadmap.lattice, roadmap.prover
         objective = lattice_objective = roadmap.objective(result.path)
         optimum, exact = (objective, True) if self.exact else optimum_or_bound(roadmap)
         offsets, clearances = lattice.offsets[result.path], roadmap.path_clearances(result.path)
         length, cut_short = roadmap.path_length(result.path), not exact
-        if refine:
+        if request.refine is not False:
             refined, cut = refined_path(
                 lattice, prover, offsets, clearances, roadmap.nodes, roadmap.deadline
             )

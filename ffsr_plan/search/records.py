@@ -60,7 +60,7 @@ class SearchMonitor(NamedTuple):
     on_cycle: OnCycle | None = None
     deadline: Deadline | None = None
     reserve: Callable[[], float] = float
-    on_path: Callable[[IntArray], object] = bool
+    on_path: Callable[[IntArray], object] = len
 
     def expired(self) -> bool:
         """Whether the search has to end now."""

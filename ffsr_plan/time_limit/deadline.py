@@ -39,7 +39,7 @@ class Deadline:
             stop_requested: whether Ctrl-C was pressed.
             clock: gives the time [s].
         """
-        self.seconds, self.stage = seconds, "the preparation"
+        self.seconds, self.stage = seconds, "the set-up of the lattice"
         self._stop_requested, self._clock = stop_requested, clock
         self._begin, self._kernels = clock(), spent_on_kernels()
         self._end = seconds

@@ -8,9 +8,17 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from ffsr_plan.collision import distances
+from ffsr_plan.lattice import shortest_path
 from ffsr_plan.planning import plan_and_refine
 from ffsr_plan.search import lattice_planner, workers
-from ffsr_plan.search.postures import early_proofs, posture_annealing
+from ffsr_plan.search.ants import max_min
+from ffsr_plan.search.postures import (
+    annealing_kernels,
+    ant_tour_kernels,
+    early_proofs,
+    posture_annealing,
+)
 from ffsr_plan.search.records import SearchRequest
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -189,3 +197,36 @@ def test_an_error_out_of_time_has_limit_and_stage():
     again = pickle.loads(pickle.dumps(error))
     assert (again.time_limit, again.stage) == (0.02, "the set-up of the lattice")
     assert "before Ctrl-C ended" in str(fp.OutOfTime(float("inf"), "the search"))
+
+
+def test_work_in_parts_gives_the_same_plan(problem, gate, monkeypatch):
+    short = replace(problem, delta=0.0)
+    cases = [(problem, MAX_MIN), (short, fp.LatticeOptimum()), (gate, SHORT)]
+    whole = [fp.plan(*case, 0) for case in cases]
+    monkeypatch.setattr(distances, "_AT_ONCE", 3)
+    monkeypatch.setattr(shortest_path, "_EDGES_AT_ONCE", 1)
+    monkeypatch.setattr(ant_tour_kernels, "_NODES_AT_ONCE", 5)
+    monkeypatch.setattr(annealing_kernels, "_SECONDS_OF_A_PART", 0.0)
+    monkeypatch.setattr(max_min, "_SECONDS_PER_CHECK", 0.0)
+    assert [fp.plan(*case, 0) for case in cases] == whole
+
+
+def test_the_nearest_pair_goes_on_from_part_to_part(problem, monkeypatch):
+    rows = [[x, y, 0.0] for x in np.arange(1.0, 10.0) for y in (-1.4, 1.4)]  # many equally near
+    scene = fp.Scene(rows, [0.2] * len(rows))
+    configurations = np.tile(problem.start, (50, 1))
+    configurations[:, 0] = np.linspace(0.0, 10.0, 50)
+    query = distances.ObstacleQuery(problem.robot, scene)
+    whole = [query.distances(configurations)]
+    monkeypatch.setattr(distances, "_AT_ONCE", 1)
+    starts, search = [], distances.nearest_pairs_from
+
+    def noted(*arguments):
+        starts.append(arguments[5:])
+        return search(*arguments)
+
+    monkeypatch.setattr(distances, "nearest_pairs_from", noted)
+    whole.append(query.distances(configurations))
+    assert np.array_equal(*whole)
+    assert starts[0] == (0, 0)
+    assert len(set(starts)) > 5

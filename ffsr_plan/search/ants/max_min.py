@@ -68,10 +68,42 @@ class MaxMinAntSystem(LatticePlanner):
             OutOfTime: no path was proven by the deadline.
             PlanningError: no ant found a path, which does not prove that there is none.
         """
-        from ffsr_plan.search.ants.max_min_kernels import BEST, CYCLE
-        from ffsr_plan.search.ants.open_edges import find_open_edges
+        from ffsr_plan.search.ants.max_min_kernels import BEST, CYCLE, DONE, run_cycles
 
         monitor = monitor or SearchMonitor()
+        state, open_counts = self._prepared(roadmap)
+        until, stride, interrupted = 0, 1, False
+        try:
+            while until < self.cycles:
+                begin, until = time.monotonic(), min(until + stride, self.cycles)
+                while run_cycles(rng, until, state) != DONE:
+                    if not roadmap.prove_path(state.candidate):
+                        _close_refused(roadmap, state, open_counts)
+                    monitor.check()
+                if monitor.on_cycle is not None:
+                    monitor.on_cycle(_report(state, self.cycles))
+                elif time.monotonic() - begin < _SECONDS_PER_CHECK:
+                    stride = min(2 * stride, _MOST_CYCLES_PER_CHECK)
+                elif time.monotonic() - begin > 2.0 * _SECONDS_PER_CHECK:
+                    stride = max(stride // 2, 1)
+                if until < self.cycles:
+                    monitor.check()
+        except OutOfTime:
+            interrupted = True
+            if not _found(roadmap, rng, state):
+                raise
+        if not np.isfinite(state.values[BEST]):
+            raise roadmap.no_path() or PlanningError(
+                f"none of {self.ants} ants found a free path in {state.counters[CYCLE]} "
+                "cycles, which does not prove that there is none: more cycles may find one"
+            )
+        history = History.of_rows(state.records[: state.counters[CYCLE]])
+        return SearchResult(frozen(state.best_path), history, _trails(state), interrupted)
+
+    def _prepared(self, roadmap: Roadmap) -> tuple[State, IntArray]:
+        """The state before the first cycle, and how many open edges leave each node."""
+        from ffsr_plan.search.ants.open_edges import find_open_edges
+
         roadmap.prove_obvious()
         open_edges, open_counts = find_open_edges(
             roadmap.admissible, roadmap.status, roadmap.deadline
@@ -80,55 +112,7 @@ class MaxMinAntSystem(LatticePlanner):
             raise roadmap.no_path() or InternalError(
                 "no open edge at the start, but the roadmap has a path"
             )
-        state = self._state(roadmap, open_edges)
-        interrupted = False
-        try:
-            self._run(roadmap, rng, state, open_counts, monitor)
-        except OutOfTime:
-            interrupted = True
-            if not _found(roadmap, rng, state):
-                raise
-        if not interrupted and not np.isfinite(state.values[BEST]):
-            raise roadmap.no_path() or PlanningError(
-                f"none of {self.ants} ants found a free path in {state.counters[CYCLE]} "
-                "cycles, which does not prove that there is none: more cycles may find one"
-            )
-        done = state.records[: state.counters[CYCLE]]
-        history = History.of_rows(done)
-        trails = _trails(state)
-        return SearchResult(frozen(state.best_path), history, trails, interrupted)
-
-    def _run(
-        self,
-        roadmap: Roadmap,
-        rng: np.random.Generator,
-        state: State,
-        open_counts: IntArray,
-        monitor: SearchMonitor,
-    ) -> None:
-        """Run all cycles.
-
-        Raises:
-            OutOfTime: at the deadline; the state holds what was found.
-        """
-        from ffsr_plan.search.ants.max_min_kernels import DONE, run_cycles
-
-        until, stride = 0, 1
-        while until < self.cycles:
-            begin, until = time.monotonic(), min(until + stride, self.cycles)
-            while run_cycles(rng, until, state) != DONE:
-                if not roadmap.prove_path(state.candidate):
-                    _close_refused(roadmap, state, open_counts)
-                monitor.check()
-            if monitor.on_cycle is not None:
-                monitor.on_cycle(_report(state, self.cycles))
-            if until < self.cycles:
-                monitor.check()
-            seconds = time.monotonic() - begin
-            if monitor.on_cycle is None and seconds < _SECONDS_PER_CHECK:
-                stride = min(2 * stride, _MOST_CYCLES_PER_CHECK)
-            elif seconds > 2.0 * _SECONDS_PER_CHECK:
-                stride = max(stride // 2, 1)
+        return self._state(roadmap, open_edges), open_counts
 
     def _state(self, roadmap: Roadmap, open_edges: Flags) -> State:
         from ffsr_plan.search.ants.local_search_kernels import neighbourhood

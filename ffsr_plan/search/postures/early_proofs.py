@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from ffsr_plan.core.arrays import IntArray
 from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.search.postures.colony import PostureColony
@@ -59,6 +61,10 @@ class EarlyProofs:
         self._seconds, self._next, self._objective = 0.0, 0.0, float("inf")
         self._last = b""
         self.best: ProvenPath | None = None
+
+    def has(self, path: IntArray) -> bool:
+        """Whether a path (m + 1, 2) is the best one that was proven."""
+        return self.best is not None and np.array_equal(path, self.best.path)
 
     def reserve(self) -> float:
         """Time to keep for the last proof [s]."""

@@ -14,7 +14,7 @@ from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.postures.colony import AnnealingSettings, PostureColony, PosturePath
-from ffsr_plan.search.postures.early_proofs import EarlyProofs, ProvenPath
+from ffsr_plan.search.postures.early_proofs import EarlyProofs
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import (
     CORRECTABLE,
@@ -88,19 +88,28 @@ class PostureAnnealing(AnnealingSettings):
             )
         if request.colonies > 1:
             return self._best_of_colonies(problem, rng, request)
-        deadline = request.deadline or Deadline()
-        deadline.stage = "the set-up of the lattice"
-        lattice = PostureLattice(problem, deadline)
-        check_start(problem)
+        lattice = _lattice(problem, request.deadline or Deadline())
         request.begin()
-        colony = PostureColony(lattice, posture_grid(lattice), self, rng)
-        deadline.stage = "the search for a path"
-        early = EarlyProofs(lattice, colony, deadline)
+        colony, deadline = _colony(lattice, self, rng), lattice.deadline
+        early, proofs = EarlyProofs(lattice, colony, deadline), _Proofs(lattice, colony)
         monitor = SearchMonitor(request.on_cycle, deadline, early.reserve, early.offer)
         result = colony.search(monitor)
-        proofs = _Proofs(lattice, colony)
+        path, cut_short = result.path, result.interrupted
+        if cut_short and (missing := colony.shortcomings(path)):
+            deadline.stage = f"the search, whose best path so far {missing}"
         try:
-            cut_short = _prove(proofs, lattice, colony, result, monitor, early.best)
+            for _ in range(0 if early.has(path) else _PROOF_ATTEMPTS):
+                first = proofs.is_empty and early.best is None
+                with deadline.without_stop() if first else nullcontext():  # so that there is a plan
+                    proof = prove_path(lattice, *corners(lattice, path))
+                    corrected, spent = corrected_proof(lattice, proof)
+                proofs.take(path, proof, corrected, proof.prover.queries + spent)
+                cut_short |= not corrected.holds and monitor.expired()
+                if corrected.holds or cut_short:
+                    break
+                shifts = _SHIFTS_AFTER_REFUSAL * problem.lattice.divisions
+                temperatures = _TEMPERATURES_AFTER_REFUSAL
+                path, _ = colony.annealed(path, shifts, *temperatures, monitor.expired)
         except OutOfTime:
             cut_short = True
             if proofs.is_empty and early.best is None:
@@ -108,7 +117,7 @@ class PostureAnnealing(AnnealingSettings):
         if not proofs.hold and early.best is not None:
             proofs.take(*early.best)
         deadline.close()
-        return proofs.solution(result._replace(interrupted=result.interrupted or cut_short))
+        return proofs.solution(result._replace(interrupted=cut_short))
 
     def _best_of_colonies(
         self, problem: Problem, rng: np.random.Generator, request: SearchRequest
@@ -130,38 +139,19 @@ class PostureAnnealing(AnnealingSettings):
         return best._replace(interrupted=cut_short)
 
 
-def _prove(
-    proofs: _Proofs,
-    lattice: PostureLattice,
-    colony: PostureColony,
-    result: PosturePath,
-    monitor: SearchMonitor,
-    early: ProvenPath | None,
-) -> bool:
-    """Prove the path of a search; while that fails, anneal further. Whether it was cut short.
+def _lattice(problem: Problem, deadline: Deadline) -> PostureLattice:
+    """The lattice, after a check of the start."""
+    lattice = PostureLattice(problem, deadline)
+    check_start(problem)
+    return lattice
 
-    Raises:
-        OutOfTime: at the deadline.
-    """
-    path, deadline = result.path, lattice.deadline
-    if early is not None and np.array_equal(path, early.path):
-        proofs.take(*early)
-        return False
-    if result.interrupted and (missing := colony.shortcomings(path)):
-        deadline.stage = f"the search, whose best path so far {missing}"
-    shifts = _SHIFTS_AFTER_REFUSAL * lattice.problem.lattice.divisions
-    for _ in range(_PROOF_ATTEMPTS):
-        first = proofs.is_empty and early is None
-        with deadline.without_stop() if first else nullcontext():  # so that there is a plan
-            proof = prove_path(lattice, *corners(lattice, path))
-            corrected, spent = corrected_proof(lattice, proof)
-        proofs.take(path, proof, corrected, proof.prover.queries + spent)
-        if corrected.holds:
-            return False
-        if result.interrupted or monitor.expired():
-            return True
-        path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL, monitor.expired)
-    return False
+
+def _colony(
+    lattice: PostureLattice, chosen: AnnealingSettings, rng: np.random.Generator
+) -> PostureColony:
+    colony = PostureColony(lattice, posture_grid(lattice), chosen, rng)
+    lattice.deadline.stage = "the search for a path"
+    return colony
 
 
 class _Proofs:
