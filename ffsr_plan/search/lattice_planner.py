@@ -71,8 +71,7 @@ class LatticePlanner(ABC):
             InvalidInput: the lattice has posture axes.
             StartInCollision, GoalInCollision: with link, obstacle and depth.
             NoPath: the lattice holds no free path, with the layer that cannot be passed.
-            OutOfTime: no path was proven in time.
-            PlanningError: no path was found.
+            PlanningError: no path was found; `OutOfTime` if none was proven in time.
             WorkerDied: a worker process ended without a result.
         """
         self.refuse(problem)

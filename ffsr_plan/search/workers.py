@@ -79,10 +79,8 @@ def run_on_workers(
     stop, token = context.Event(), context.Lock()
     announcement.share(token)
     begun = [context.Event() for _ in shares]
-    executors = [
-        ProcessPoolExecutor(1, initializer=_start, initargs=(stop, token, own, os.getpid()))
-        for own in begun
-    ]
+    settings = [(stop, token, own, os.getpid()) for own in begun]
+    executors = [ProcessPoolExecutor(1, initializer=_start, initargs=each) for each in settings]
     try:
         with _ctrl_c_blocked():
             limit = deadline.handed_on()
