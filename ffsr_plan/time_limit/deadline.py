@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.core.kernels.compiling_time import spent_on_kernels
 
-CLOSING_SHARE, CLOSING_SECONDS = 0.03, 0.015
+CLOSING_SHARE, CLOSING_SECONDS = 0.04, 0.015
 """Time for the certificate of a path that is proven, beyond the limit: a share of it, and [s]."""
 
 
@@ -91,8 +91,7 @@ class Deadline:
 
     def close(self) -> None:
         """There is a path to return: its certificate may take a little longer than the limit."""
-        now = self.elapsed()
-        end = now if self.stopped() else max(self._end, now)
+        end = min(self._end, self.elapsed()) if self.stopped() else self._end
         self._end = end + CLOSING_SHARE * end + CLOSING_SECONDS
         self._stop_requested = bool
 
