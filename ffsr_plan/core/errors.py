@@ -17,10 +17,9 @@ from ffsr_plan.core.contacts import (
     contact_list,
     obstacle_name,
 )
+from ffsr_plan.core.formatting import MOST_CHARACTERS_OF_A_VALUE, on_one_line, shortened
 
-_MOST_CHARACTERS_OF_A_VALUE = 120
 _SIMILAR = 0.55  # share of letters in common from which a name counts as misspelt
-_MOST_CHARACTERS = 600  # of the field, and of what is allowed
 
 
 class FfsrPlanError(Exception):
@@ -59,8 +58,8 @@ class InvalidInput(FfsrPlanError, ValueError):
 
     def message(self) -> str:
         """What is wrong, the value and what is allowed, on one line."""
-        what, allowed = _on_one_line(self.what), _on_one_line(self.allowed)
-        return f"{what}: got {_shorten(self.value)}; allowed: {allowed}"
+        what, allowed = on_one_line(self.what), on_one_line(self.allowed)
+        return f"{what}: got {shortened(self.value)}; allowed: {allowed}"
 
 
 class UncheckedLinks(UserWarning):
@@ -209,6 +208,26 @@ class AttitudeOutOfReach(PlanningError):
             f"misses the goal by {math.degrees(self.missed):.2g} degrees; {longer}more divisions, "
             "wider or more posture axes, or another seed may help"
         )
+
+
+@dataclass(eq=False, repr=False)
+class OutOfTime(PlanningError):
+    """The time limit passed before any path was proven free; this does not prove that none exists.
+
+    Attributes:
+        time_limit: [s]; infinite where Ctrl-C ended the planning.
+        stage: what it ended.
+    """
+
+    time_limit: float
+    stage: str
+
+    def message(self) -> str:
+        """The limit, what it ended, and what may help."""
+        limit = f"the time_limit of {self.time_limit:g} s"
+        ended = "Ctrl-C" if math.isinf(self.time_limit) else limit
+        advice = ("a longer time_limit", "fewer divisions, offsets or postures")
+        return f"no path was proven free before {ended} ended {self.stage}" + _helping(advice)
 
 
 class HeldBase(NamedTuple):
@@ -369,7 +388,7 @@ def nearest_name(value: object, names: Iterable[str]) -> str | None:
 
     Of a word for another thing, such as `diameter`, half of the letters are often those of a name.
     """
-    given = str(value)[:_MOST_CHARACTERS_OF_A_VALUE].casefold()
+    given = str(value)[:MOST_CHARACTERS_OF_A_VALUE].casefold()
     known = {name.casefold(): name for name in reversed(list(names))}
     similar = difflib.get_close_matches(given, known, n=1, cutoff=_SIMILAR)
     return known[similar[0]] if similar else None
@@ -377,24 +396,3 @@ def nearest_name(value: object, names: Iterable[str]) -> str | None:
 
 def _helping(advice: tuple[str, ...]) -> str:
     return f"; what may help: {'; '.join(advice)}" if advice else ""
-
-
-def _shorten(value: object) -> str:
-    """The value as Python shows it, cut short; values that cannot be shown by their type."""
-    most = _MOST_CHARACTERS_OF_A_VALUE
-    if isinstance(value, int) and value.bit_length() > 4 * most:
-        return f"a whole number of {value.bit_length()} bits"
-    try:
-        text = _on_one_line(repr(value))
-    except Exception:  # a `__repr__` may raise anything, for example for an integer too long
-        return f"an object of the class {type(value).__name__}"
-    return text if len(text) <= most else f"{text[: most - 3]}..."
-
-
-def _on_one_line(text: str) -> str:
-    """A text without line ends and control characters, its middle left out if it is long."""
-    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in " ".join(text.split()))
-    if len(shown) <= _MOST_CHARACTERS:
-        return shown
-    part = _MOST_CHARACTERS // 2
-    return f"{shown[:part]} ... {shown[-part:]}"

@@ -7,6 +7,9 @@ from html import escape
 
 import numpy as np
 
+MOST_CHARACTERS_OF_A_VALUE = 120
+_MOST_CHARACTERS = 600  # of a text on one line
+
 
 def proven(clearance: float) -> str:
     """Format a lower bound on a clearance, rounded down so that it stays a lower bound.
@@ -40,3 +43,24 @@ def html_table(title: str, rows: Mapping[str, str]) -> str:
         f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows.items()
     )
     return f"<table><caption>{escape(title)}</caption>{cells}</table>"
+
+
+def shortened(value: object) -> str:
+    """A value as Python shows it, cut short; values that cannot be shown by their type."""
+    most = MOST_CHARACTERS_OF_A_VALUE
+    if isinstance(value, int) and value.bit_length() > 4 * most:
+        return f"a whole number of {value.bit_length()} bits"
+    try:
+        text = on_one_line(repr(value))
+    except Exception:  # a `__repr__` may raise anything, for example for an integer too long
+        return f"an object of the class {type(value).__name__}"
+    return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def on_one_line(text: str) -> str:
+    """A text without line ends and control characters, its middle left out if it is long."""
+    shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in " ".join(text.split()))
+    if len(shown) <= _MOST_CHARACTERS:
+        return shown
+    part = _MOST_CHARACTERS // 2
+    return f"{shown[:part]} ... {shown[-part:]}"

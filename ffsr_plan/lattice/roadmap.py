@@ -20,20 +20,27 @@ from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.time_limit.deadline import Deadline
 
 
 class Roadmap:
     """Nodes and edges of a lattice with their clearances and states.
 
     Attributes:
+        problem: what the lattice was built from.
+        deadline: after which whatever takes long raises `OutOfTime`.
         lattice: the lattice.
         prover: clearances and proofs for any offsets.
         nodes: clearances of the nodes, evaluated on demand.
         status: (m, n, n) state of each edge: UNKNOWN, FREE or REFUSED.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, deadline: Deadline | None = None) -> None:
         """Set up the lattice; nodes are evaluated when they are first needed.
+
+        Args:
+            problem: a problem without posture axes.
+            deadline: for this and all later work; none by default.
 
         Raises:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
@@ -47,9 +54,9 @@ class Roadmap:
                 len(problem.lattice.postures),
                 "none: with them a node has no single attitude, which a roadmap needs",
             )
-        self.problem = problem
+        self.problem, self.deadline = problem, deadline or Deadline()
         self.lattice = LayeredLattice(problem)
-        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)
+        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance, self.deadline)
         self.prover.check_ends()
         self.prover.check_self_collision(against_self_collision())
         self.nodes = NodeClearances(self.lattice, self.prover)
@@ -139,6 +146,10 @@ class Roadmap:
                 self._note(edge, verdict)
         return bool(np.all(self.status[layers, path[:-1], path[1:]] == FREE))
 
+    def is_proven(self, path: IntArray) -> bool:
+        """Whether every edge of a path (m + 1,) is known to be free."""
+        return bool(np.all(self.status[np.arange(len(path) - 1), path[:-1], path[1:]] == FREE))
+
     def refused_layers(self, path: IntArray) -> IntArray:
         """The layers that a path leaves by a refused edge.
 
@@ -156,6 +167,7 @@ class Roadmap:
         prover, base_travel = self.prover, self.lattice.base_travel
         positive = np.where(self.admissible, self.clearances, np.nan)
         for i in range(self.lattice.divisions):
+            self.deadline.check()
             travel = base_travel + (prover.speeds[i] + prover.rounding)
             self.status[i][positive[i][:, None] + positive[i + 1] > travel] = FREE
 

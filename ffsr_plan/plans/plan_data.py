@@ -40,7 +40,10 @@ class PlanData:
         objective: F of Eq. 8 [length units], which contains the clearances at the nodes;
             `motion_objective` contains those between them too.
         lattice_objective: F of the path on the lattice, before refinement.
-        optimum: F of the exact lattice optimum; with posture axes a lower bound on it.
+        optimum: F of the exact lattice optimum, or a lower bound on it.
+        optimum_is_exact: whether `optimum` is exact. With posture axes it is a bound, as the cost
+            of a node depends on the path that leads to it, and also where the time limit or Ctrl-C
+            ended the search for it; no path of the lattice falls below a bound.
         clearances: (m + 1,) least link-to-sphere distance at each node [m].
         history: per cycle, best F, best and mean F of the cycle, number of different paths.
         trails: the edges that ants walked, with ants and pheromone.
@@ -59,6 +62,7 @@ class PlanData:
     objective: float
     lattice_objective: float
     optimum: float
+    optimum_is_exact: bool
     clearances: Array
     history: History
     trails: Trails
@@ -89,20 +93,11 @@ class PlanData:
 
     @property
     def gap(self) -> float:
-        """(lattice_objective - optimum) / optimum; `optimum` is a bound with posture axes."""
+        """(lattice_objective - optimum) / optimum; see `optimum_is_exact`."""
         above = self.lattice_objective - self.optimum
         if above <= 0.0:
             return 0.0
         return above / self.optimum if self.optimum > 0.0 else np.inf
-
-    @property
-    def optimum_is_exact(self) -> bool:
-        """Whether `optimum` is the exact lattice optimum, and not only a lower bound on it.
-
-        With posture axes the cost of a node depends on the path that leads to it, and `gap` is the
-        distance from a bound that no path of the lattice falls below.
-        """
-        return not self.problem.lattice.postures
 
     @property
     def arrival_attitude(self) -> Array:

@@ -63,6 +63,7 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
         objective=table.objective,
         lattice_objective=table.lattice_objective,
         optimum=table.optimum,
+        optimum_is_exact=table.optimum_is_exact,
         clearances=table.clearances,
         history=History(*(getattr(table.history, name) for name in History._fields)),
         trails=Trails(*(getattr(table.trails, name) for name in Trails._fields)),

@@ -29,6 +29,8 @@ def check_search(what: str, table: PlanTable, problem: Problem) -> None:
     if table.optimum > most * (1.0 + _ROUNDING):
         allowed = f"at most lattice_objective, {most!r}"
         raise InvalidInput(f"{what}, optimum", table.optimum, allowed)
+    if table.optimum_is_exact and problem.lattice.postures:
+        raise InvalidInput(f"{what}, optimum_is_exact", True, "false with posture axes")
     edges, path = table.certificate.edges_free, problem.lattice.divisions
     if edges < path:
         allowed = f"at least {path}, the edges of the path"

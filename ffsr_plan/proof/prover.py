@@ -30,6 +30,7 @@ from ffsr_plan.proof.motion_edges import (
 )
 from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.time_limit.deadline import Deadline
 
 if TYPE_CHECKING:
     from ffsr_plan.proof.kernels.course import Course, Memory
@@ -48,17 +49,26 @@ class Prover:
         rounding: length that is added to every travel bound [m].
     """
 
-    def __init__(self, nominal: Motion, scene: Scene, tolerance: float) -> None:
+    def __init__(
+        self,
+        nominal: Motion,
+        scene: Scene,
+        tolerance: float,
+        deadline: Deadline | None = None,
+    ) -> None:
         """Prepare the proofs.
 
         Args:
             nominal: the motion from which offsets are counted.
             scene: the obstacles.
             tolerance: clearance below which an edge may be refused [m].
+            deadline: after which distance queries, and so all proofs, raise `OutOfTime`.
         """
         self._motion, self._scene, self.tolerance = nominal, scene, tolerance
-        self._obstacles = ObstacleQuery(nominal.robot, scene)
-        self._self = SelfQuery(nominal.robot)
+        self._deadline = deadline or Deadline()
+        self._deadline.check()
+        self._obstacles = ObstacleQuery(nominal.robot, scene, deadline)
+        self._self = SelfQuery(nominal.robot, deadline)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
         self._placements = NominalPlacements(nominal)
         self._corners = shape_placements(nominal.robot, nominal.configurations())

@@ -10,7 +10,7 @@ from threading import Lock, Timer
 from typing import Any, Literal, TypeVar, cast
 
 from ffsr_plan.core.kernels import announcement
-from ffsr_plan.core.kernels.compiling_time import count_begin, count_end, is_own
+from ffsr_plan.core.kernels.compiling_time import count_begin, count_end, is_own, loading
 from ffsr_plan.core.kernels.kernel_cache import keep_on_disk
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -44,11 +44,12 @@ class Kernel:
     @cached_property
     def dispatcher(self) -> Any:  # noqa: ANN401 - its type depends on numba's version
         """The numba dispatcher, made at the first use."""
-        from numba import njit
+        with loading():
+            from numba import njit
 
-        options: dict[str, Any] = {"no_cfunc_wrapper": True}
-        dispatcher = njit(nogil=True, **options)(self.py_func)
-        _listen_once(keep_on_disk(dispatcher))
+            options: dict[str, Any] = {"no_cfunc_wrapper": True}
+            dispatcher = njit(nogil=True, **options)(self.py_func)
+            _listen_once(keep_on_disk(dispatcher))
         return dispatcher
 
     @cached_property
