@@ -150,10 +150,8 @@ class ObstacleQuery:
         """
         if self.empty or self._bounds_only:
             return self.distances_at(placed, places, shifts)
-        found: tuple[Array, ...] = nearest_pairs(
-            self._tree, self._shapes.kinds, placed.frames, places, shifts
-        )
-        return found[0]
+        kinds, frames = self._shapes.kinds, placed.frames
+        return nearest_pairs(self._tree, kinds, frames, places, shifts)[0]
 
     def nearest_at(self, placed: Placements, place: int, shift: Array) -> Nearest:
         """The nearest pair of one placement, displaced.

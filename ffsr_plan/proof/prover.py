@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from ffsr_plan.proof.kernels.course import Course, Memory
 
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
+_EDGES_AT_ONCE = 64  # edges that are proven between two looks at the deadline
 _ITERATION_ERROR = 1e-7  # [m] for distances that Coal iterates to 1e-8
 _RELATIVE_ITERATION_ERROR = 4e-9  # for each metre between the centres of the two shapes
 
@@ -195,10 +196,13 @@ class Prover:
 
         edges, course = records(edge_proof.EDGE, len(layers)), self._course
         edges.layer, edges.tail, edges.head, edges.ends = layers, tails, heads, ends
-        edge_proof.prove(
-            course, self.speeds, edges, self.rounding, self.tolerance, self._memory,
-            edge_proof.intervals_for(course),
-        )  # fmt: skip
+        halving = edge_proof.intervals_for(course)
+        for first in range(0, len(layers), _EDGES_AT_ONCE):
+            self._deadline.check()
+            some = edges[first : first + _EDGES_AT_ONCE]
+            edge_proof.prove(
+                course, self.speeds, some, self.rounding, self.tolerance, self._memory, halving
+            )
         verdicts, columns = [], (edges.state, edges.least, edges.time, edges.count)
         for k, (state, least, time, count) in enumerate(
             zip(*(column.tolist() for column in columns), strict=True)
