@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_collision
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
-from ffsr_plan.core.arrays import Array, IntArray, records
+from ffsr_plan.core.arrays import Array, IntArray, Records, records
 from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.course import course_in_base, course_of
@@ -199,7 +199,7 @@ class Prover:
         halving = edge_proof.intervals_for(course)
         for first in range(0, len(layers), _EDGES_AT_ONCE):
             self._deadline.check()
-            some = edges[first : first + _EDGES_AT_ONCE]
+            some = cast("Records", edges[first : first + _EDGES_AT_ONCE])
             edge_proof.prove(
                 course, self.speeds, some, self.rounding, self.tolerance, self._memory, halving
             )

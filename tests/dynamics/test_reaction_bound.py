@@ -8,9 +8,10 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import records
 from ffsr_plan.dynamics.kernels import reaction as reaction_kernels
 from ffsr_plan.dynamics.kernels.bodies import (
+    LINK_STATE,
     ROBOT_STATE,
+    base_at_rest,
     base_rate,
-    link_states,
     move_links,
     weigh_links,
 )
@@ -23,7 +24,8 @@ from tests.helpers.urdf_builders import random_robot
 
 def states_at(robot, values, rates):
     """States of the links and of the robot, and the least moment of inertia from below."""
-    links, whole = link_states(robot.nd + 1), records(ROBOT_STATE, 1)
+    links = base_at_rest(records(LINK_STATE, robot.nd + 1))
+    whole = records(ROBOT_STATE, 1)
     move_links(robot.bodies, values, rates, links)
     weigh_links(robot.bodies, links, whole)
     least = base_rate(whole)

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, Records, records
+from ffsr_plan.core.arrays import Array, Records
 from ffsr_plan.core.kernels.compilation import kernel
 
 LINK_STATE = np.dtype(
@@ -46,9 +46,8 @@ ROBOT_STATE = np.dtype(
 _EPS = np.finfo(np.float64).eps
 
 
-def link_states(count: int) -> Records:
-    """(count,) memory for links, the base at rest at the origin."""
-    links = records(LINK_STATE, count)
+def base_at_rest(links: Records) -> Records:
+    """Put the base at rest at the origin: the first of n records of `LINK_STATE`, all zero."""
     links.rotation[0] = np.eye(3)
     return links
 

@@ -17,9 +17,10 @@ from numpy.polynomial import legendre
 from ffsr_plan.core.arrays import Array, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import (
+    LINK_STATE,
     ROBOT_STATE,
+    base_at_rest,
     base_rate,
-    link_states,
     move_links,
     rate_rounding,
     weigh_links,
@@ -93,7 +94,7 @@ def memory_for(count: int) -> Memory:
     """Memory for `count` links."""
     return Memory(
         np.empty(count - 1),
-        link_states(count),
+        base_at_rest(records(LINK_STATE, count)),
         records(ROBOT_STATE, 1),
         records(EXCURSION, count),
         np.empty((64, 2)),

@@ -25,9 +25,10 @@ import numpy as np
 from ffsr_plan.core.arrays import Array, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import (
+    LINK_STATE,
     ROBOT_STATE,
+    base_at_rest,
     base_rate,
-    link_states,
     move_links,
     norm_of,
     total_mass,
@@ -103,8 +104,9 @@ class Scratch(NamedTuple):
 
 def scratch_for(count: int) -> Scratch:
     """Memory for `count` links."""
+    links = base_at_rest(records(LINK_STATE, count))
     robot, base = records(ROBOT_STATE, 1), records(BASE_STATE, 1)
-    return Scratch(link_states(count), records(LINK_BOUND, count), robot, base)
+    return Scratch(links, records(LINK_BOUND, count), robot, base)
 
 
 class BaseBounds(NamedTuple):
