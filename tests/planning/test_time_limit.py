@@ -1,5 +1,6 @@
 """A time limit on a clock that ticks at every look: what is proven is kept, all else is cut."""
 
+import contextlib
 import pickle
 from dataclasses import replace
 from itertools import count
@@ -10,7 +11,10 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.collision import distances
 from ffsr_plan.lattice import shortest_path
+from ffsr_plan.lattice.optimum import OptimumSearch, straight_bound
 from ffsr_plan.planning import plan_and_refine
+from ffsr_plan.proof.prover import Prover
+from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search import lattice_planner, workers
 from ffsr_plan.search.ants import max_min
 from ffsr_plan.search.postures import (
@@ -19,7 +23,7 @@ from ffsr_plan.search.postures import (
     early_proofs,
     posture_annealing,
 )
-from ffsr_plan.search.records import SearchRequest
+from ffsr_plan.search.records import SearchMonitor, SearchRequest
 from ffsr_plan.time_limit.deadline import Deadline
 
 MAX_MIN, ANT_SYSTEM = fp.MaxMinAntSystem(cycles=12), fp.AntSystem(cycles=4, ants=5)
@@ -230,3 +234,46 @@ def test_the_nearest_pair_goes_on_from_part_to_part(problem, monkeypatch):
     assert np.array_equal(*whole)
     assert starts[0] == (0, 0)
     assert len(set(starts)) > 5
+
+
+def test_an_optimum_cut_short_has_a_bound_that_holds(problem):
+    exact = fp.plan(problem, fp.LatticeOptimum(), refine=False).optimum
+    bounds = []
+    for looks in range(1, 400, 6):
+        ticks, roadmap = count(), fp.Roadmap(problem)
+        roadmap.deadline = Deadline(float(looks), clock=lambda ticks=ticks: float(next(ticks)))
+        search = OptimumSearch(roadmap)
+        with contextlib.suppress(fp.OutOfTime):
+            search.path()
+        bounds.append(search.bound)
+    assert straight_bound(problem) in bounds
+    assert straight_bound(problem) < max(bounds) <= exact * (1.0 + 1e-12)
+
+
+def test_a_refinement_that_was_cut_short_says_so(problem):
+    plan = fp.plan(problem, MAX_MIN, 0, refine=False)
+    lattice, prover = plan.lattice, Prover(plan.motion, problem.scene, problem.tolerance)
+    still = np.zeros((plan.motion.edges + 1, 3))
+    passed = Deadline(stop_requested=lambda: True)
+    assert refined_path(lattice, prover, still, plan.clearances, None, passed) == (None, True)
+
+
+def test_a_path_that_is_proven_before_its_cycle_is_done_counts(problem, monkeypatch):
+    roadmap, proven = fp.Roadmap(problem), []
+    prove = roadmap.prove_path
+    monkeypatch.setattr(
+        roadmap, "prove_path", lambda path: prove(path) and not proven.append(path.copy())
+    )
+    monitor = SearchMonitor(deadline=Deadline(stop_requested=lambda: bool(proven)))
+    result = MAX_MIN.search(roadmap, np.random.default_rng(0), monitor)
+    assert result.interrupted
+    assert np.array_equal(result.path, proven[0])
+    assert len(result.history.best) == 1
+
+
+def test_colonies_that_did_not_run_mark_the_plan(problem):
+    roadmap = fp.Roadmap(problem)
+    result = MAX_MIN.search(roadmap, np.random.default_rng(0))
+    outcome = lattice_planner._Outcome(result, 0, 0, 0)
+    assert not lattice_planner._best(roadmap, [outcome], 1).interrupted
+    assert lattice_planner._best(roadmap, [outcome], 2).interrupted
