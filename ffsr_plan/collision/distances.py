@@ -6,6 +6,7 @@ its distance. All pairs are never listed, so that ten thousand spheres cost litt
 
 from __future__ import annotations
 
+import time
 from typing import NamedTuple
 
 import coal
@@ -26,7 +27,8 @@ from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
 
 _TOUCHING, _MOST_TOUCHING = 1e-9, 20_000  # [m] bound of pairs that may touch; pairs to be listed
-_AT_ONCE = 256  # configurations that are measured between two looks at the deadline
+_AT_ONCE = 64  # configurations that are measured between two looks at the deadline, at first
+_SECONDS_AT_ONCE = 0.003  # up to which twice as many are measured the next time
 
 
 class Nearest(NamedTuple):
@@ -68,6 +70,7 @@ class ObstacleQuery:
         self._bounds_only = not bool(self._shapes.exact.all())
         self.empty = len(scene) == 0 or len(self._shapes.kinds) == 0
         self.count = 0
+        self._at_once = _AT_ONCE
         self._ball = coal.Sphere(1.0)
         self._measures = [
             coal.ComputeDistance(shape.geometry, self._ball)
@@ -150,8 +153,12 @@ class ObstacleQuery:
         """
         if self.empty or self._bounds_only:
             return self.distances_at(placed, places, shifts)
-        kinds, frames = self._shapes.kinds, placed.frames
-        return nearest_pairs(self._tree, kinds, frames, places, shifts)[0]
+        kinds, frames, found = self._shapes.kinds, placed.frames, np.empty(len(places))
+        for first in range(0, len(places), self._at_once):
+            self._deadline.check()
+            some = slice(first, first + self._at_once)
+            found[some] = nearest_pairs(self._tree, kinds, frames, places[some], shifts[some])[0]
+        return found
 
     def nearest_at(self, placed: Placements, place: int, shift: Array) -> Nearest:
         """The nearest pair of one placement, displaced.
@@ -191,10 +198,12 @@ class ObstacleQuery:
         if self.empty:
             none = np.zeros(len(places), dtype=np.int64)
             return np.full(len(places), np.inf), none, none
-        found, which, row = [], 0, 0
-        for first in range(0, max(len(places), 1), _AT_ONCE):
+        found: list[tuple[Array, IntArray, IntArray]] = []
+        which = row = first = 0
+        while first < len(places) or not found:
             self._deadline.check()
-            some = slice(first, first + _AT_ONCE)
+            begin, some = time.monotonic(), slice(first, first + self._at_once)
+            first += self._at_once
             _, shape, sphere, local = nearest_pairs_from(
                 self._tree,
                 self._shapes.kinds,
@@ -211,6 +220,11 @@ class ObstacleQuery:
             if self._bounds_only:
                 self._refine(placed, places[some], shifts[some], least, shape, sphere)
             found.append((least, shape, sphere))
+            seconds = time.monotonic() - begin
+            if len(shape) == self._at_once and seconds < _SECONDS_AT_ONCE:
+                self._at_once *= 2
+            elif seconds > 2.0 * _SECONDS_AT_ONCE:
+                self._at_once = max(self._at_once // 2, 1)
         if len(found) == 1:
             return found[0]
         least, shape, sphere = (np.concatenate(parts) for parts in zip(*found, strict=True))

@@ -208,6 +208,7 @@ def test_work_in_parts_gives_the_same_plan(problem, gate, monkeypatch):
     cases = [(problem, MAX_MIN), (short, fp.LatticeOptimum()), (gate, SHORT)]
     whole = [fp.plan(*case, 0) for case in cases]
     monkeypatch.setattr(distances, "_AT_ONCE", 3)
+    monkeypatch.setattr(max_min, "_EDGES_AT_ONCE", 1)
     monkeypatch.setattr(shortest_path, "_EDGES_AT_ONCE", 1)
     monkeypatch.setattr(ant_tour_kernels, "_NODES_AT_ONCE", 5)
     monkeypatch.setattr(annealing_kernels, "_SECONDS_OF_A_PART", 0.0)
@@ -220,9 +221,10 @@ def test_the_nearest_pair_goes_on_from_part_to_part(problem, monkeypatch):
     scene = fp.Scene(rows, [0.2] * len(rows))
     configurations = np.tile(problem.start, (50, 1))
     configurations[:, 0] = np.linspace(0.0, 10.0, 50)
-    query = distances.ObstacleQuery(problem.robot, scene)
-    whole = [query.distances(configurations)]
+    whole = [distances.ObstacleQuery(problem.robot, scene).distances(configurations)]
     monkeypatch.setattr(distances, "_AT_ONCE", 1)
+    monkeypatch.setattr(distances, "_SECONDS_AT_ONCE", 0.0)
+    query = distances.ObstacleQuery(problem.robot, scene)
     starts, search = [], distances.nearest_pairs_from
 
     def noted(*arguments):

@@ -20,6 +20,7 @@ if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colon
     from ffsr_plan.search.ants.max_min_kernels import State
 
 _LARGE_LAYER = 100  # nodes; from this size on pheromone lies on nodes, not on edges
+_EDGES_AT_ONCE = 300_000  # whose visibility is worked out between two looks at the deadline
 _MOST_TRAILS = 10_000  # edges whose trails are kept for pictures
 _MOST_CYCLES_PER_CHECK, _SECONDS_PER_CHECK = 16, 0.002  # between two looks at the deadline
 
@@ -169,10 +170,10 @@ class MaxMinAntSystem(LatticePlanner):
         seen = np.where(np.isfinite(node_costs[1:]), node_costs[1:], 0.0) * float(self.cost_aware)
         least = np.min(np.maximum(edge_costs.min(axis=0) + seen, 1e-12))  # of all edges' costs
         result = np.empty((len(seen), n, n))
-        for visibility, own, is_open in zip(result, seen, open_edges, strict=True):
+        for layers in _blocks(len(seen), n):
             deadline.check()
-            cost = np.maximum(edge_costs + own, 1e-12) / least
-            visibility[:] = (1.0 / cost**2 if beta == 2.0 else cost**-beta) * is_open
+            cost = np.maximum(edge_costs + seen[layers, None], 1e-12) / least
+            result[layers] = (1.0 / cost**2 if beta == 2.0 else cost**-beta) * open_edges[layers]
         return result
 
 
@@ -188,10 +189,16 @@ def _found(roadmap: Roadmap, rng: np.random.Generator, state: State) -> bool:
 def _summed(visibility: Array, deadline: Deadline) -> Array:
     """(m, n, n) sums along the last axis."""
     result = np.empty_like(visibility)
-    for own, sums in zip(visibility, result, strict=True):
+    for layers in _blocks(*visibility.shape[:2]):
         deadline.check()
-        np.cumsum(own, axis=1, out=sums)
+        np.cumsum(visibility[layers], axis=2, out=result[layers])
     return result
+
+
+def _blocks(m: int, n: int) -> list[slice]:
+    """The m layers of n^2 edges in blocks that take some milliseconds."""
+    layers = max(1, _EDGES_AT_ONCE // n**2)
+    return [slice(first, first + layers) for first in range(0, m, layers)]
 
 
 def _close_refused(roadmap: Roadmap, state: State, open_counts: IntArray) -> None:
@@ -231,9 +238,10 @@ def _trails(state: State) -> Trails:
     from ffsr_plan.search.ants.max_min_kernels import write_untouched_rows
 
     write_untouched_rows(state)
-    layers, tails = np.nonzero(state.left)  # other rows have not even been given memory
-    rows, heads = np.nonzero(state.walked[layers, tails])
-    used = np.ravel_multi_index((layers[rows], tails[rows], heads), state.walked.shape)
+    rows = np.flatnonzero(state.left)  # other rows have not even been given memory
+    n = state.walked.shape[2]
+    found, heads = np.divmod(np.flatnonzero(state.walked.reshape(-1, n)[rows]), n)
+    used = rows[found] * n + heads
     if len(used) > _MOST_TRAILS:
         ants = state.walked.ravel()[used]
         used = np.sort(used[np.argsort(-ants, kind="stable")[:_MOST_TRAILS]])

@@ -33,7 +33,7 @@ from ffsr_plan.search.postures.cost_kernels import (
 )
 
 _FIRST_PART = 64  # shifts of an annealing between two checks of time and Ctrl-C, at first
-_SECONDS_OF_A_PART = 0.004  # up to which the next part is twice as long
+_SECONDS_OF_A_PART = 0.006  # up to which the next part is twice as long
 
 
 @kernel
