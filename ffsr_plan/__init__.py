@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ffsr_plan.collision.distances import Clearance, clearance
+    from ffsr_plan.collision.clearance import Clearance, clearance
     from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
     from ffsr_plan.core import errors
     from ffsr_plan.core.contacts import Contact
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         InternalError,
         InvalidInput,
         NoPath,
+        OutOfTime,
         PathNotFound,
         PlanningError,
         PlanNotVerified,
@@ -117,6 +118,7 @@ __all__ = [
     "Motion",
     "Mount",
     "NoPath",
+    "OutOfTime",
     "PageServer",
     "Panel",
     "PathNotFound",
@@ -170,7 +172,7 @@ __all__ = [
 ]
 
 _NAMES = {  # by module; each is loaded when one of its names is first used
-    "collision.distances": ("Clearance", "clearance"),
+    "collision.clearance": ("Clearance", "clearance"),
     "collision.self_collisions": ("SelfCollision", "SelfCollisions", "self_collisions"),
     "core.contacts": ("Contact",),
     "core.errors": (
@@ -183,6 +185,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "InternalError",
         "InvalidInput",
         "NoPath",
+        "OutOfTime",
         "PathNotFound",
         "PlanNotVerified",
         "PlanningError",

@@ -96,7 +96,7 @@ def plan(
     workers: Annotated[int, typer.Option(help="Processes for the colonies.")] = 1,
     time_limit: Annotated[
         float | None,
-        typer.Option(help="Seconds after which the search stops; refinement comes after it."),
+        typer.Option(help="Seconds for the planning; the best proven path is kept."),
     ] = None,
     out: Out = None,
     force: Force = False,

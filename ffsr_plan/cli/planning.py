@@ -49,7 +49,7 @@ class Options(NamedTuple):
         refine: None for the scenario's.
         colonies: number of independent colonies.
         workers: number of processes.
-        time_limit: of the search [s].
+        time_limit: of the planning [s].
         duration: of the motion [s], for the peak momentum of the wheels.
         live: options of the live view; None for no live view.
         pictures: whether to draw the figures.

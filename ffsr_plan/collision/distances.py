@@ -6,22 +6,29 @@ its distance. All pairs are never listed, so that ten thousand spheres cost litt
 
 from __future__ import annotations
 
+import time
 from typing import NamedTuple
 
 import coal
 import numpy as np
 import pinocchio as pin
-from numpy.typing import ArrayLike
 
-from ffsr_plan.collision.nearest_sphere_kernels import nearest_pairs, nearest_to_each, pairs_below
+from ffsr_plan.collision.nearest_sphere_kernels import (
+    nearest_pairs,
+    nearest_pairs_from,
+    nearest_to_each,
+    pairs_below,
+)
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.collision_shapes import sharpen
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.time_limit.deadline import Deadline
 
 _TOUCHING, _MOST_TOUCHING = 1e-9, 20_000  # [m] bound of pairs that may touch; pairs to be listed
+_AT_ONCE = 64  # configurations that are measured between two looks at the deadline, at first
+_SECONDS_AT_ONCE = 0.003  # up to which twice as many are measured the next time
 
 
 class Nearest(NamedTuple):
@@ -49,19 +56,21 @@ class ObstacleQuery:
         count: number of configurations whose clearance Coal has measured.
     """
 
-    def __init__(self, robot: SpaceRobot, scene: Scene) -> None:
+    def __init__(self, robot: SpaceRobot, scene: Scene, deadline: Deadline | None = None) -> None:
         """Prepare the measurements.
 
         Args:
             robot: the robot.
             scene: the obstacles.
+            deadline: after which measurements raise `OutOfTime`.
         """
-        self._robot = robot
+        self._robot, self._deadline = robot, deadline or Deadline()
         self._links = [robot.link_of(shape) for shape in robot.collision_model.geometryObjects]
         self._tree, self._shapes = scene.tree, robot.primitives
         self._bounds_only = not bool(self._shapes.exact.all())
         self.empty = len(scene) == 0 or len(self._shapes.kinds) == 0
         self.count = 0
+        self._at_once = _AT_ONCE
         self._ball = coal.Sphere(1.0)
         self._measures = [
             coal.ComputeDistance(shape.geometry, self._ball)
@@ -131,6 +140,26 @@ class ObstacleQuery:
         """
         return self._pairs(placed, places, shifts)[0]
 
+    def closed_at(self, placed: Placements, places: IntArray, shifts: Array) -> Array:
+        """The same in closed form, without a query of Coal where no shape is a hull.
+
+        Args:
+            placed: K placements of the shapes.
+            places: (n,) which of the K; fastest if successive ones are close in space.
+            shifts: (n, 3) displacements of the whole robot [m].
+
+        Returns:
+            (n,) distances [m], infinite in an empty scene.
+        """
+        if self.empty or self._bounds_only:
+            return self.distances_at(placed, places, shifts)
+        kinds, frames, found = self._shapes.kinds, placed.frames, np.empty(len(places))
+        for first in range(0, len(places), self._at_once):
+            self._deadline.check()
+            some = slice(first, first + self._at_once)
+            found[some] = nearest_pairs(self._tree, kinds, frames, places[some], shifts[some])[0]
+        return found
+
     def nearest_at(self, placed: Placements, place: int, shift: Array) -> Nearest:
         """The nearest pair of one placement, displaced.
 
@@ -169,16 +198,52 @@ class ObstacleQuery:
         if self.empty:
             none = np.zeros(len(places), dtype=np.int64)
             return np.full(len(places), np.inf), none, none
-        self.count += len(places)
-        _, shape, sphere, local = nearest_pairs(
-            self._tree, self._shapes.kinds, placed.frames, places, shifts
-        )
-        least = self._measured(shape, sphere, local)
-        if self._bounds_only:
-            for k, place in enumerate(places):
-                pair = self._nearest_hull(placed, place, shifts[k], least[k], shape[k], sphere[k])
-                least[k], shape[k], sphere[k] = pair
+        found: list[tuple[Array, IntArray, IntArray]] = []
+        which = row = first = 0
+        while first < len(places) or not found:
+            self._deadline.check()
+            begin, some = time.monotonic(), slice(first, first + self._at_once)
+            first += self._at_once
+            _, shape, sphere, local = nearest_pairs_from(
+                self._tree,
+                self._shapes.kinds,
+                placed.frames,
+                places[some],
+                shifts[some],
+                which,
+                row,
+            )
+            if len(shape):
+                which, row = int(shape[-1]), int(sphere[-1])
+            self.count += len(shape)
+            least = self._measured(shape, sphere, local)
+            if self._bounds_only:
+                self._refine(placed, places[some], shifts[some], least, shape, sphere)
+            found.append((least, shape, sphere))
+            seconds = time.monotonic() - begin
+            if len(shape) == self._at_once and seconds < _SECONDS_AT_ONCE:
+                self._at_once *= 2
+            elif seconds > 2.0 * _SECONDS_AT_ONCE:
+                self._at_once = max(self._at_once // 2, 1)
+        if len(found) == 1:
+            return found[0]
+        least, shape, sphere = (np.concatenate(parts) for parts in zip(*found, strict=True))
         return least, shape, sphere
+
+    def _refine(
+        self,
+        placed: Placements,
+        places: IntArray,
+        shifts: Array,
+        least: Array,
+        shape: IntArray,
+        sphere: IntArray,
+    ) -> None:
+        """Replace pairs, nearest by lower bounds, by the nearest ones."""
+        for k, place in enumerate(places):
+            self._deadline.check()
+            pair = self._nearest_hull(placed, place, shifts[k], least[k], shape[k], sphere[k])
+            least[k], shape[k], sphere[k] = pair
 
     def _measured(self, shape: IntArray, sphere: IntArray, local: Array) -> Array:
         """(n,) Coal's distances of shapes (n,) to spheres (n,) centred at `local` (n, 3).
@@ -236,8 +301,9 @@ class SelfQuery:
         count: number of configurations evaluated.
     """
 
-    def __init__(self, robot: SpaceRobot) -> None:
+    def __init__(self, robot: SpaceRobot, deadline: Deadline | None = None) -> None:
         self._robot, self._model = robot, robot.model
+        self._deadline = deadline or Deadline()
         self._geometry = robot.collision_model
         self._data = robot.model.createData()
         self._geometry_data = self._geometry.createData()
@@ -257,10 +323,27 @@ class SelfQuery:
         Returns:
             (p,) distances [m], negative in penetration.
         """
+        self._deadline.check()
         self.count += not self.empty
         data = self._geometry_data
         pin.computeDistances(self._model, self._data, self._geometry, data, q)
         return np.array([result.min_distance for result in data.distanceResults])
+
+    def distances_of(self, pairs: IntArray, q: Array) -> Array:
+        """Distances of some pairs.
+
+        Args:
+            pairs: (k,) numbers of the pairs.
+            q: (nq,) configuration.
+
+        Returns:
+            (k,) distances [m], negative in penetration.
+        """
+        self.count += 1
+        geometry, data = self._geometry, self._geometry_data
+        pin.updateGeometryPlacements(self._model, self._data, geometry, data, q)
+        found = [pin.computeDistance(geometry, data, pair).min_distance for pair in pairs.tolist()]
+        return np.array(found)
 
     def distance(self, q: Array) -> float:
         """Least distance over all pairs.
@@ -273,6 +356,7 @@ class SelfQuery:
         """
         if self.empty:
             return np.inf
+        self._deadline.check()
         self.count += 1
         data = self._geometry_data
         pair = pin.computeDistances(self._model, self._data, self._geometry, data, q)
@@ -304,61 +388,3 @@ class SelfQuery:
             self._robot.link_of(self._geometry.geometryObjects[int(k)]) for k in self.pairs[pair]
         )
         return Nearest(distance, first, second)
-
-
-class Clearance(float):
-    """A clearance [m], a float, with the pair of link and obstacle.
-
-    The result of arithmetic, rounding or `min` with a float is a plain float without link and
-    obstacle.
-
-    Attributes:
-        link: name of the nearest link; empty in an empty scene.
-        obstacle: index of the nearest sphere in the scene; None in an empty scene.
-    """
-
-    link: str
-    obstacle: int | None
-
-    def __new__(cls, distance: float, link: str, obstacle: int | None) -> Clearance:  # noqa: D102
-        clearance = super().__new__(cls, distance)
-        clearance.link, clearance.obstacle = link, obstacle
-        return clearance
-
-    def __repr__(self) -> str:
-        if self.obstacle is None:
-            return f"Clearance({float(self)} m, empty scene)"
-        return f"Clearance({float(self)} m, link '{self.link}', obstacle {self.obstacle})"
-
-    def __str__(self) -> str:
-        return str(float(self))
-
-    def __reduce__(self) -> tuple[type, tuple[float, str, int | None]]:
-        return type(self), (float(self), self.link, self.obstacle)
-
-
-def clearance(robot: SpaceRobot, scene: Scene, q: ArrayLike) -> Clearance:
-    """Least distance from a link to a sphere at one configuration, by Coal.
-
-    For many configurations, `ObstacleQuery(robot, scene).distances` of
-    `ffsr_plan.collision.distances` takes (N, nq) at once.
-
-    Args:
-        robot: the robot.
-        scene: the obstacles.
-        q: (nq,) configuration.
-
-    Returns:
-        The distance [m], negative in penetration and infinite in an empty scene; its attributes
-        `link` and `obstacle` name the nearest pair.
-
-    Raises:
-        InvalidInput: not a robot, a scene or a configuration of that robot.
-    """
-    if not isinstance(robot, SpaceRobot):
-        raise InvalidInput("robot", robot, "a SpaceRobot")
-    if not isinstance(scene, Scene):
-        raise InvalidInput("scene", scene, "a Scene")
-    pair = ObstacleQuery(robot, scene).nearest(robot.check_configuration("q", q))
-    obstacle = pair.obstacle if isinstance(pair.obstacle, int) else None
-    return Clearance(pair.distance, pair.link, obstacle)

@@ -7,7 +7,7 @@ by the depth of penetration.
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ from ffsr_plan.scene.sphere_tree import SphereTree
 
 STACK_SIZE = 64
 """Entries of a stack for `nearest_sphere`: a tree of halves has fewer levels than that."""
+
+_NONE: Any = np.int64(-1)  # typed as other rows are: one signature to compile
 
 
 class Spheres(Protocol):
@@ -130,9 +132,22 @@ def nearest_sphere(
     return least, nearest
 
 
-@kernel
 def nearest_pairs(
     tree: SphereTree, kinds: IntArray, frames: Array, places: IntArray, shifts: Array
+) -> tuple[Array, IntArray, IntArray, Array]:
+    """Least distance over all shapes and spheres; see `nearest_pairs_from`."""
+    return nearest_pairs_from(tree, kinds, frames, places, shifts, 0, 0)
+
+
+@kernel
+def nearest_pairs_from(
+    tree: SphereTree,
+    kinds: IntArray,
+    frames: Array,
+    places: IntArray,
+    shifts: Array,
+    which: int,
+    row: int,
 ) -> tuple[Array, IntArray, IntArray, Array]:
     """Least distance over all shapes and spheres, for many placements of the robot.
 
@@ -142,6 +157,8 @@ def nearest_pairs(
         frames: (K, g, 15) rotation, position and size of the shapes, as in `Placements.frames`.
         places: (n,) row of `frames` for each query; fastest if successive rows are close in space.
         shifts: (n, 3) displacement of the whole robot for each query [m].
+        which: shape of the nearest pair of the query before these, to begin with; 0 before any.
+        row: its row of `tree.spheres`.
 
     Returns:
         (n,) least distance [m], (n,) its shape, (n,) its row of `tree.spheres`, and (n, 3) the
@@ -152,7 +169,6 @@ def nearest_pairs(
     least, shape, sphere = np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64)
     local = np.empty((count, 3))
     stack, bounds = np.empty(STACK_SIZE, np.int32), np.empty(STACK_SIZE)
-    row, which = 0, 0
     for n in range(count):
         placed, shift = frames[places[n]], shifts[n]
         # the nearest pair of the previous query gives a small distance to start with
@@ -160,7 +176,9 @@ def nearest_pairs(
         last = which
         for step in range(len(kinds)):
             i = last - step if step <= last else step
-            distance, k = nearest_sphere(tree, kinds[i], placed[i], shift, best, -1, stack, bounds)
+            distance, k = nearest_sphere(
+                tree, kinds[i], placed[i], shift, best, _NONE, stack, bounds
+            )
             if k >= 0:
                 best, row, which = distance, k, i
         least[n], shape[n], sphere[n] = best, which, row

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import numbers
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import nearest_name
 
 _NORM_ROUNDING = 1e-15  # of the norm of numbers that have been divided by their norm
 _MOST_SHOWN = 16  # numbers of an array in a message; of more, only the first wrong one
@@ -262,3 +263,20 @@ def normalised(vector: Array) -> Array:
     """A vector (n,) divided by its norm, unless that is one but for rounding; read-only."""
     norm = float(np.linalg.norm(vector))
     return frozen(vector if abs(norm - 1.0) <= _NORM_ROUNDING else vector / norm)
+
+
+def unknown_name(
+    what: str, value: object, names: Iterable[str], none: str = "no name, as there is none"
+) -> InvalidInput:
+    """An `InvalidInput` that lists the known names and suggests the most similar one.
+
+    Args:
+        what: the field or argument.
+        value: the name.
+        names: the known names.
+        none: what is allowed if there are no names.
+    """
+    known = list(names)
+    similar = nearest_name(value, known)
+    hint = "" if similar is None else f" (did you mean '{similar}'?)"
+    return InvalidInput(what, value, f"{', '.join(known) or none}{hint}")

@@ -14,7 +14,7 @@ from ffsr_plan.core.errors import InvalidInput
 MOST_BYTES = 2e9
 """Memory [bytes] that one task may take."""
 MOST_SECONDS = 3600.0
-"""Computing time [s] that may be spent before a search begins, where a time limit counts."""
+"""Computing time [s] that may be spent before a search begins."""
 _PREFIXES = ("", "k", "M", "G", "T", "P", "E")
 
 

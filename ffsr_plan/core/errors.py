@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -16,7 +15,7 @@ from ffsr_plan.core.contacts import (
     contact_list,
     obstacle_name,
 )
-from ffsr_plan.core.formatting import nearest_name, on_one_line, shortened
+from ffsr_plan.core.formatting import on_one_line, shortened
 
 
 class FfsrPlanError(Exception):
@@ -207,6 +206,26 @@ class AttitudeOutOfReach(PlanningError):
         )
 
 
+@dataclass(eq=False, repr=False)
+class OutOfTime(PlanningError):
+    """The time limit passed before any path was proven free; this does not prove that none exists.
+
+    Attributes:
+        time_limit: [s]; infinite where Ctrl-C ended the planning.
+        stage: what it ended.
+    """
+
+    time_limit: float
+    stage: str
+
+    def message(self) -> str:
+        """The limit, what it ended, and what may help."""
+        limit = self.time_limit
+        ended = "Ctrl-C" if math.isinf(limit) else f"the time_limit of {limit:g} s"
+        advice = ("a longer time_limit", "fewer divisions, offsets or postures")
+        return f"no path was proven free before {ended} ended {self.stage}" + _helping(advice)
+
+
 class HeldBase(NamedTuple):
     """What a robot reaches from the place of its base if wheels hold the start's attitude.
 
@@ -230,8 +249,7 @@ class PoseOutOfReach(PlanningError):
     Attributes:
         frame: name of the frame.
         position_missed: distance from the wanted position at the best configuration [m].
-        attitude_missed: angle from the wanted attitude there [rad]; None if any attitude is
-            allowed.
+        attitude_missed: angle from the wanted attitude there [rad]; None if any is allowed.
         configuration: (nq,) the configuration of the least error, in which one metre counts as
             much as one radian.
         held_base: what a base that wheels hold would reach; None if they do hold it.
@@ -279,8 +297,7 @@ class UnprovenPath(PlanningError):
     Attributes:
         layer: the first layer that could not be reached.
         link: name of the link that comes too close.
-        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
-            scene.
+        obstacle: index of the sphere, or name of the other link; None in an empty scene.
         distance: least distance measured [m], negative in penetration.
         divisions: number of divisions of the lattice; its layers are 0 .. divisions.
         source: what the sphere comes from, such as the name of a mesh; empty where that is unknown.
@@ -331,13 +348,13 @@ class PathNotFound(PlanningError):
 
     def message(self) -> str:
         """What was tried, what is in the way, and what may help."""
-        proof = f", {self.refused} paths refused by the proof" if self.refused else ""
-        way = f"; the trees came as near to each other as {self.apart:.3g} m"
+        text = f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
+        text += f"nodes, {self.meetings} meetings of the trees from start and goal"
+        text += f", {self.refused} paths refused by the proof" if self.refused else ""
+        text += f"; the trees came as near to each other as {self.apart:.3g} m"
         if self.contact is not None:
             link, obstacle, depth, source = self.contact
-            way += f", with link '{link}' {-depth:.3g} m from {obstacle_name(obstacle, source)}"
-        text = f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
-        text += f"nodes, {self.meetings} meetings of the trees from start and goal{proof}{way}"
+            text += f", with link '{link}' {-depth:.3g} m from {obstacle_name(obstacle, source)}"
         return text + _helping(self.advice)
 
 
@@ -377,23 +394,6 @@ class PlanNotVerified(PlanningError):
     def message(self) -> str:
         """All problems."""
         return "the plan does not verify: " + "; ".join(self.problems)
-
-
-def unknown_name(
-    what: str, value: object, names: Iterable[str], none: str = "no name, as there is none"
-) -> InvalidInput:
-    """An `InvalidInput` that lists the known names and suggests the most similar one.
-
-    Args:
-        what: the field or argument.
-        value: the name.
-        names: the known names.
-        none: what is allowed if there are no names.
-    """
-    known = list(names)
-    similar = nearest_name(value, known)
-    hint = "" if similar is None else f" (did you mean '{similar}'?)"
-    return InvalidInput(what, value, f"{', '.join(known) or none}{hint}")
 
 
 def _helping(advice: tuple[str, ...]) -> str:

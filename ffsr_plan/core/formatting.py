@@ -8,9 +8,9 @@ from html import escape
 
 import numpy as np
 
-_MOST_OF_A_VALUE = 120  # characters of a value in an error
+_MOST_CHARACTERS_OF_A_VALUE = 120
 _SIMILAR = 0.55  # share of letters in common from which a name counts as misspelt
-_MOST_CHARACTERS = 600  # of the field, and of what is allowed
+_MOST_CHARACTERS = 600  # of a text on one line
 
 
 def proven(clearance: float) -> str:
@@ -48,8 +48,8 @@ def html_table(title: str, rows: Mapping[str, str]) -> str:
 
 
 def shortened(value: object) -> str:
-    """The value as Python shows it, cut short; values that cannot be shown by their type."""
-    most = _MOST_OF_A_VALUE
+    """A value as Python shows it, cut short; values that cannot be shown by their type."""
+    most = _MOST_CHARACTERS_OF_A_VALUE
     if isinstance(value, int) and value.bit_length() > 4 * most:
         return f"a whole number of {value.bit_length()} bits"
     try:
@@ -73,7 +73,7 @@ def nearest_name(value: object, names: Iterable[str]) -> str | None:
 
     Of a word for another thing, such as `diameter`, half of the letters are often those of a name.
     """
-    given = str(value)[:_MOST_OF_A_VALUE].casefold()
+    given = str(value)[:_MOST_CHARACTERS_OF_A_VALUE].casefold()
     known = {name.casefold(): name for name in reversed(list(names))}
     similar = difflib.get_close_matches(given, known, n=1, cutoff=_SIMILAR)
     return known[similar[0]] if similar else None

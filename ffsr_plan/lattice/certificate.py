@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.errors import OutOfTime
+from ffsr_plan.proof.prover import Prover
+
 
 class Counts(NamedTuple):
     """Edges decided and distance queries spent.
@@ -33,7 +37,8 @@ class Certificate(NamedTuple):
         edges_refused: edges refused during the search and the refinement.
         node_queries: Coal queries for the clearances of nodes, one a configuration over all pairs.
         edge_queries: Coal queries for all proofs, obstacles and self-collision together.
-        least_clearance: proven lower bound on the clearance along the whole returned motion [m].
+        least_clearance: proven lower bound on the clearance along the whole returned motion [m]; 0
+            where a time limit left no time to work it out.
         unchecked_links: links of the robot without a collision shape, for which nothing is proven.
     """
 
@@ -48,3 +53,20 @@ class Certificate(NamedTuple):
     def counts(self) -> Counts:
         """The counts alone."""
         return Counts(*self[:4])
+
+
+def proven_clearance(prover: Prover, offsets: Array, clearances: Array) -> tuple[float, bool]:
+    """Proven lower bound on the clearance along a path whose edges are free.
+
+    Args:
+        prover: proofs along the motion from which offsets are counted.
+        offsets: (m + 1, 3) offsets of the path's nodes [m].
+        clearances: (m + 1,) clearances at the nodes [m].
+
+    Returns:
+        The bound [m], and whether the deadline cut it short, in which case it is 0.
+    """
+    try:
+        return prover.least_clearance(offsets, clearances), False
+    except OutOfTime:
+        return 0.0, True

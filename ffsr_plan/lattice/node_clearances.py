@@ -36,9 +36,10 @@ class NodeClearances:
 
     def _evaluate(self, layers: IntArray, offsets: Array) -> Array:
         before = self._prover.queries
-        clearances = self._prover.clearances(layers, offsets)
-        self.queries += self._prover.queries - before  # none in an empty scene
-        return clearances
+        try:
+            return self._prover.clearances(layers, offsets)
+        finally:
+            self.queries += self._prover.queries - before  # none in an empty scene
 
     def learn(self, path: IntArray) -> IntArray:
         """Evaluate the nodes of a path.

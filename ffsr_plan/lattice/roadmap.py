@@ -18,22 +18,29 @@ from ffsr_plan.problem.advice import against_obstacles, against_self_collision
 from ffsr_plan.problem.memory_estimate import check_lattice
 from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.proof.interval_halving import Verdict, certify
+from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.time_limit.deadline import Deadline
 
 
 class Roadmap:
     """Nodes and edges of a lattice with their clearances and states.
 
     Attributes:
+        problem: what the lattice was built from.
+        deadline: after which whatever takes long raises `OutOfTime`.
         lattice: the lattice.
         prover: clearances and proofs for any offsets.
         nodes: clearances of the nodes, evaluated on demand.
         status: (m, n, n) state of each edge: UNKNOWN, FREE or REFUSED.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, deadline: Deadline | None = None) -> None:
         """Set up the lattice; nodes are evaluated when they are first needed.
+
+        Args:
+            problem: a problem without posture axes.
+            deadline: for this and all later work; none by default.
 
         Raises:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
@@ -47,9 +54,9 @@ class Roadmap:
                 len(problem.given_lattice.postures),
                 "none: with them a node has no single attitude, which a roadmap needs",
             )
-        self.problem = problem
+        self.problem, self.deadline = problem, deadline or Deadline()
         self.lattice = LayeredLattice(problem)
-        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance)
+        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance, self.deadline)
         self.prover.check_ends()
         self.prover.check_self_collision(against_self_collision())
         self.nodes = NodeClearances(self.lattice, self.prover)
@@ -93,13 +100,19 @@ class Roadmap:
         if key not in self._verdicts:
             ends = (self._clearance(layer, tail), self._clearance(layer + 1, head))
             offsets = self.lattice.offsets
-            edge = self.prover.obstacle_edge(layer, offsets[tail], offsets[head])
-            verdict = certify(edge, ends, self.prover.tolerance)
-            self._verdicts[key] = verdict
-            self.status[key] = FREE if verdict.free else REFUSED
-            if not verdict.free:
-                rule_out(self.status[layer], offsets, offsets, (tail, head), verdict)
+            (verdict,) = self.prover.certify_all(
+                np.array([layer]), offsets[[tail]], offsets[[head]], np.array([ends])
+            )
+            self._note(key, verdict)
         return self._verdicts[key]
+
+    def _note(self, edge: tuple[int, int, int], verdict: Verdict) -> None:
+        """Keep a verdict; a refusal may refuse other edges with it."""
+        self._verdicts[edge] = verdict
+        self.status[edge] = FREE if verdict.free else REFUSED
+        if not verdict.free:
+            offsets = self.lattice.offsets
+            rule_out(self.status[edge[0]], offsets, offsets, edge[1:], verdict)
 
     def free(self, layer: int, tail: int, head: int) -> bool:
         """Whether an edge is free, certifying it if its state is unknown.
@@ -122,9 +135,20 @@ class Roadmap:
             Whether all of them are free.
         """
         layers = np.arange(len(path) - 1)
-        for layer in np.flatnonzero(self.status[layers, path[:-1], path[1:]] == UNKNOWN).tolist():
-            self.certify(layer, int(path[layer]), int(path[layer + 1]))
+        open_ones = np.flatnonzero(self.status[layers, path[:-1], path[1:]] == UNKNOWN)
+        if len(open_ones):
+            clearances, offsets = self.path_clearances(path), self.lattice.offsets
+            tails, heads = path[open_ones], path[open_ones + 1]
+            ends = np.column_stack([clearances[open_ones], clearances[open_ones + 1]])
+            edges = zip(open_ones.tolist(), tails.tolist(), heads.tolist(), strict=True)
+            verdicts = self.prover.certify_all(open_ones, offsets[tails], offsets[heads], ends)
+            for edge, verdict in zip(edges, verdicts, strict=True):
+                self._note(edge, verdict)
         return bool(np.all(self.status[layers, path[:-1], path[1:]] == FREE))
+
+    def is_proven(self, path: IntArray) -> bool:
+        """Whether every edge of a path (m + 1,) is known to be free."""
+        return bool(np.all(self.status[np.arange(len(path) - 1), path[:-1], path[1:]] == FREE))
 
     def refused_layers(self, path: IntArray) -> IntArray:
         """The layers that a path leaves by a refused edge.
@@ -143,6 +167,7 @@ class Roadmap:
         prover, base_travel = self.prover, self.lattice.base_travel
         positive = np.where(self.admissible, self.clearances, np.nan)
         for i in range(self.lattice.divisions):
+            self.deadline.check()
             travel = base_travel + (prover.speeds[i] + prover.rounding)
             self.status[i][positive[i][:, None] + positive[i + 1] > travel] = FREE
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, States
+from ffsr_plan.time_limit.deadline import Deadline
+
+_EDGES_AT_ONCE = 1_000_000  # that are evaluated between two looks at the deadline
 
 
 class LazyShortestPath:
@@ -15,7 +18,14 @@ class LazyShortestPath:
     whose outgoing edges have to be searched again.
     """
 
-    def __init__(self, edge_costs: Array, node_costs: Array, status: States, origin: int) -> None:
+    def __init__(
+        self,
+        edge_costs: Array,
+        node_costs: Array,
+        status: States,
+        origin: int,
+        deadline: Deadline | None = None,
+    ) -> None:
         """A search from node `origin` of layer 0 to that of layer m.
 
         Args:
@@ -23,12 +33,18 @@ class LazyShortestPath:
             node_costs: (m + 1, n), infinite where a node may not be entered; optimistic at first.
             status: (m, n, n) state of each edge; refused ones are left out.
             origin: the node of layers 0 and m.
+            deadline: after which searches raise `OutOfTime`.
         """
         self._edge_costs, self._node_costs, self._status = edge_costs, node_costs, status
-        self._origin = origin
+        self._origin, self._deadline = origin, deadline or Deadline()
         m, n = len(status), status.shape[1]
         self._costs, self._before = np.full((m + 1, n), np.inf), np.zeros((m + 1, n), np.int64)
         self._costs[0, origin] = 0.0
+
+    @property
+    def least_cost(self) -> float:
+        """Cost of the shortest path that was found last; infinite if there was none."""
+        return float(self._costs[-1, self._origin])
 
     def path(self, first: int = 0) -> IntArray | None:
         """The shortest path at the present costs.
@@ -41,9 +57,13 @@ class LazyShortestPath:
         """
         from ffsr_plan.lattice.shortest_path_kernel import extend
 
-        costs, before, m = self._costs, self._before, len(self._status)
-        extend(first, self._edge_costs, self._node_costs, self._status, costs, before)
-        if not np.isfinite(costs[m, self._origin]):
+        costs, before, (m, n, _) = self._costs, self._before, self._status.shape
+        layers = max(1, _EDGES_AT_ONCE // n**2)
+        for begin in range(first, m, layers):
+            self._deadline.check()
+            end = min(begin + layers, m)
+            extend(begin, end, self._edge_costs, self._node_costs, self._status, costs, before)
+        if not np.isfinite(self.least_cost):
             return None
         path = np.empty(m + 1, dtype=np.int64)
         path[m] = self._origin

@@ -12,6 +12,7 @@ from ffsr_plan.lattice.edge_states import REFUSED
 @kernel
 def extend(
     first: int,
+    last: int,
     edge_costs: Array,
     node_costs: Array,
     status: States,
@@ -22,14 +23,15 @@ def extend(
 
     Args:
         first: the first layer whose edges are evaluated; `costs` are valid up to it.
+        last: the layer at which to end.
         edge_costs: (m, n, n) or (1, n, n).
         node_costs: (m + 1, n), infinite where a node may not be entered.
         status: (m, n, n); refused edges are left out.
         costs: (m + 1, n) least cost of reaching each node, updated.
         before: (m + 1, n) the node that the shortest path comes from, updated.
     """
-    m, n = len(status), status.shape[1]
-    for i in range(first, m):
+    n = status.shape[1]
+    for i in range(first, last):
         edges = edge_costs[min(i, len(edge_costs) - 1)]
         costs[i + 1] = np.inf
         for j in range(n):

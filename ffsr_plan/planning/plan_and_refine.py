@@ -25,6 +25,7 @@ from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.interruption import RAISE, RETURN, Interruption
 from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
+from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.tree_planner import TreePlanner
 
 _NOTABLE = 1e-4  # [rad] or [m]
@@ -49,9 +50,9 @@ def plan(
 ) -> Plan:
     """Plan a collision-free motion and certify it.
 
-    Ctrl-C and `time_limit` end the search early; the best plan so far is returned, marked as
-    `interrupted`. Ctrl-C raises KeyboardInterrupt where there is no plan yet, when it is pressed
-    again, and in a call of `plan` that begins within 2 s of such a return: a loop ends.
+    Ctrl-C and `time_limit` end whatever is being done, and the best path proven by then is
+    returned, `interrupted`. Ctrl-C raises KeyboardInterrupt where there is no plan yet, when it is
+    pressed again, and in a call of `plan` that begins within 2 s of such a return: a loop ends.
 
     Args:
         problem: what to plan.
@@ -63,7 +64,7 @@ def plan(
             every lattice without posture axes, as with them paths are not refined.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
-        time_limit: [s] for the search alone, without set-up, optimum and refinement.
+        time_limit: [s] from call to return, within 5 % and 20 ms; compiling does not count.
         until: `first` returns the first path that is proven free, where there is no lattice.
         on_cycle: called with a `Cycle` after each cycle, for a single colony; without a lattice,
             with a `TreeCycle` after each round.
@@ -77,13 +78,14 @@ def plan(
             the plan that misses it least.
         PathNotFound: no path was found without a lattice, with what is in the way.
         UnprovenPath: with posture axes, the path found could not be proven free.
-        PlanningError: no path was found in time.
+        PlanningError: no path was found; `OutOfTime` if none was proven in time.
         WorkerDied: a worker process ended without a result.
     """
-    watch = Stopwatch()
+    watch, deadline = Stopwatch(), _deadline(time_limit)
     chosen = _planner_for(problem, planner)
     rng, seed_number = _generator(seed)
-    request = _request(chosen, refine, colonies, workers, time_limit, until, on_cycle)
+    request = _request(chosen, refine, colonies, workers, until, on_cycle)
+    request = request._replace(deadline=deadline)
     check_colonies(problem, request.colonies)
     certified = partial(_certified, problem, chosen, seed_number, watch)
     interruption = Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE)))
@@ -128,7 +130,7 @@ def refine(plan: Plan) -> Plan:
     nominal = plan.lattice.nominal
     prover = Prover(nominal, plan.problem.scene, plan.problem.tolerance)
     offsets = plan.motion.positions - nominal.positions
-    refined = refined_path(plan.lattice, prover, offsets, plan.clearances)
+    refined, _ = refined_path(plan.lattice, prover, offsets, plan.clearances)
     if refined is None:
         return plan
     motion = nominal.displaced(refined.offsets)
@@ -149,7 +151,6 @@ def _request(
     refine: bool | None,
     colonies: int,
     workers: int,
-    time_limit: float | None,
     until: str,
     on_cycle: OnCycle | None,
 ) -> SearchRequest:
@@ -167,15 +168,17 @@ def _request(
         raise InvalidInput(
             "until", until, f"'end' with {planner.name}, or a problem without lattice"
         )
-    seconds = math.inf if time_limit is None else number("time_limit", time_limit, above=0.0)
     return SearchRequest(
         refine=None if refine is None else truth("refine", refine),
         colonies=count,
         workers=whole_number("workers", workers, at_least=1, at_most=_MOST_WORKERS),
-        time_limit=seconds,
         on_cycle=on_cycle,
         first=first,
     )
+
+
+def _deadline(time_limit: float | None) -> Deadline:
+    return Deadline(math.inf if time_limit is None else number("time_limit", time_limit, above=0.0))
 
 
 def _planner_for(problem: Problem, planner: Planner | str | None) -> Planner:

@@ -44,8 +44,12 @@ class PlanData:
             a lattice at 39 stations at equal steps of L; `motion_objective` contains those between
             them too.
         lattice_objective: F of the path on the lattice, before refinement; F without a lattice.
-        optimum: F of the exact lattice optimum; with posture axes a lower bound on it, and without
-            a lattice F of the straight way past obstacles that are `clearance_cap` away.
+        optimum: F of the exact lattice optimum, or a lower bound on it; without a lattice, F of the
+            straight way past obstacles that are `clearance_cap` away.
+        optimum_is_exact: whether `optimum` is exact. With posture axes it is a bound, as the cost
+            of a node depends on the path that leads to it, and also where the time limit or Ctrl-C
+            ended the search for it; no path of the lattice falls below a bound. Without a lattice
+            no path at all does.
         clearances: (m + 1,) least link-to-sphere distance at each node [m].
         history: per cycle, best F, best and mean F of the cycle, number of different paths.
         trails: the edges that ants walked, with ants and pheromone; without a lattice, the
@@ -65,6 +69,7 @@ class PlanData:
     objective: float
     lattice_objective: float
     optimum: float
+    optimum_is_exact: bool
     clearances: Array
     history: History
     trails: Trails | Branches
@@ -109,17 +114,6 @@ class PlanData:
         if above <= 0.0:
             return 0.0
         return above / self.optimum if self.optimum > 0.0 else np.inf
-
-    @property
-    def optimum_is_exact(self) -> bool:
-        """Whether `optimum` is the exact lattice optimum, and not only a lower bound on it.
-
-        With posture axes the cost of a node depends on the path that leads to it, and `gap` is the
-        distance from a bound that no path of the lattice falls below. Without a lattice no path at
-        all falls below the bound.
-        """
-        lattice = self.problem.lattice
-        return lattice is not None and not lattice.postures
 
     @property
     def arrival_attitude(self) -> Array:

@@ -60,6 +60,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
         "objective": plan.objective,
         "lattice_objective": plan.lattice_objective,
         "optimum": plan.optimum,
+        "optimum_is_exact": plan.optimum_is_exact,
         "clearances": _without_infinity(plan.clearances),
         "history": {
             k: v.tolist() if k == "distinct" else _without_infinity(v)

@@ -66,6 +66,7 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
         objective=table.objective,
         lattice_objective=table.lattice_objective,
         optimum=table.optimum,
+        optimum_is_exact=table.optimum_is_exact,
         clearances=table.clearances,
         history=History(*(getattr(table.history, name) for name in History._fields)),
         trails=_search_edges(what, table),

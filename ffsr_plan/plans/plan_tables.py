@@ -249,6 +249,7 @@ class PlanTable:
     objective: Annotated[float, Number(at_least=0.0)]
     lattice_objective: Annotated[float, Number(at_least=0.0)]
     optimum: Annotated[float, Number(at_least=0.0)]
+    optimum_is_exact: Annotated[bool, Truth()]
     clearances: Annotated[Any, Columns(infinite=True)]
     history: HistoryTable
     trails: TrailsTable

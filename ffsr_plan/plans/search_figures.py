@@ -31,6 +31,10 @@ def check_search(what: str, table: PlanTable, problem: Problem) -> None:
     if table.optimum > most * (1.0 + _ROUNDING):
         allowed = f"at most lattice_objective, {most!r}"
         raise InvalidInput(f"{what}, optimum", table.optimum, allowed)
+    lattice = problem.lattice
+    if table.optimum_is_exact and (lattice is None or lattice.postures):
+        allowed = "false with posture axes and without a lattice"
+        raise InvalidInput(f"{what}, optimum_is_exact", True, allowed)
     edges, path = table.certificate.edges_free, len(table.motion.positions) - 1
     if edges < path:
         allowed = f"at least {path}, the edges of the path"

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
-from ffsr_plan.core.checks import number
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.checks import number, unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, Rule, Text, WholeNumber
 from ffsr_plan.core.settings import Given, settings
 from ffsr_plan.robots.robot import SpaceRobot

@@ -14,12 +14,12 @@ and a node lies on the rim of its offsets.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.lattice.node_clearances import NodeClearances
@@ -30,6 +30,7 @@ from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.band_search import NO_GAIN, BandSearch
 from ffsr_plan.refinement.edge_clearances import EdgeClearances
 from ffsr_plan.refinement.offset_band import OffsetBand
+from ffsr_plan.time_limit.deadline import Deadline
 
 _FINEST = 16
 _STEPS = (8, 4, 2, 1)  # of the levels, in sixteenths of the spacing
@@ -93,9 +94,9 @@ def refined_path(
     offsets: Array,
     clearances: Array,
     nodes: NodeClearances | None = None,
-    stop_requested: Callable[[], bool] = bool,
-) -> RefinedPath | None:
-    """Move a proven path to where F of the whole motion is lower; None where it does not fall.
+    deadline: Deadline | None = None,
+) -> tuple[RefinedPath | None, bool]:
+    """Move a proven path to where F of the whole motion is lower.
 
     Offsets stay within the lattice's window, in steps of a sixteenth of its spacing.
 
@@ -105,37 +106,34 @@ def refined_path(
         offsets: (m + 1, 3) of the path [m].
         clearances: (m + 1,) at its nodes [m].
         nodes: clearances of the lattice's nodes as far as they are known; they save queries.
-        stop_requested: asked between rounds; whether to end with what has been reached.
+        deadline: when to end with what has been reached; that of `prover`.
+
+    Returns:
+        The path, None where F does not fall; and whether the deadline ended it early.
     """
     problem = lattice.problem
-    if not problem.given_lattice.axes or stop_requested():
-        return None  # with one node a layer there is no offset to change
-    descent = _Descent(lattice, prover, offsets, clearances)
-    before = descent.edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
-    descent.value = before
-    if problem.delta > 0.0 and nodes is not None:
-        descent.learn(nodes.known, nodes.bounds, lattice.indices)
-    for level in _levels(problem):
-        for _ in range(level.rounds):
-            if stop_requested():
-                break
-            band = descent.band(level)
-            measured = descent.measured(band)
-            search = BandSearch(problem, descent.edges, band, measured, descent.value)
-            path = search.best_path(level.candidates)
-            if path is None or not descent.take(band, measured, path, level):
-                break
-    if not descent.value < before:
-        return None
-    moved = descent.coordinates @ descent.unit
-    length = path_length(problem, moved)
-    return RefinedPath(
-        offsets=moved,
-        clearances=frozen(descent.clearances),
-        length=length,
-        objective=objective(problem, length, descent.clearances),
-        counts=descent.counts(),
-    )
+    if not problem.given_lattice.axes:
+        return None, False  # with one node a layer there is no offset to change
+    descent, cut_short = _Descent(lattice, prover, offsets, clearances), False
+    deadline, edges, before = deadline or Deadline(), descent.edges, np.inf
+    try:
+        deadline.check()
+        before = edges.motion_objective(descent.coordinates @ descent.unit, descent.clearances)
+        descent.value = before
+        if problem.delta > 0.0 and nodes is not None:
+            descent.learn(nodes.known, nodes.bounds, lattice.indices)
+        for level in _levels(problem):
+            for _ in range(level.rounds):
+                deadline.check()
+                band = descent.band(level)
+                measured = descent.measured(band)
+                search = BandSearch(problem, edges, band, measured, descent.value)
+                path = search.best_path(level.candidates)
+                if path is None or not descent.take(band, measured, path, level):
+                    break
+    except OutOfTime:
+        cut_short = True
+    return descent.result() if descent.value < before else None, cut_short
 
 
 class _Descent:
@@ -157,6 +155,18 @@ class _Descent:
         self._queries_before, self._node_queries = prover.queries, 0
         self.clearances = np.array(clearances)
         self.value = np.inf
+
+    def result(self) -> RefinedPath:
+        """The path as it is."""
+        moved = self.coordinates @ self.unit
+        length = path_length(self._problem, moved)
+        return RefinedPath(
+            offsets=moved,
+            clearances=frozen(self.clearances),
+            length=length,
+            objective=objective(self._problem, length, self.clearances),
+            counts=self.counts(),
+        )
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""

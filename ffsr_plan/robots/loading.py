@@ -11,9 +11,9 @@ import pinocchio as pin
 
 from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.checks import one_of
+from ffsr_plan.core.checks import one_of, unknown_name
 from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.errors import InvalidInput, UncheckedLinks, unknown_name
+from ffsr_plan.core.errors import InvalidInput, UncheckedLinks
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.collision_shapes import CONTAINERS, Containers, collision_geometry
 from ffsr_plan.robots.loaded_model_checks import compare

@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.checks import number
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.checks import number, unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.urdf.joints import NO_JOINT, position_limits
 from ffsr_plan.robots.urdf.number_texts import attribute_numbers, attribute_text, numbers
 from ffsr_plan.robots.urdf.origins import roll_pitch_yaw

@@ -11,10 +11,17 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, Records, content, frozen
+from ffsr_plan.core.checks import (
+    FARTHEST,
+    finite_array,
+    normalised,
+    number,
+    unit_quaternion,
+    unknown_name,
+)
 from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.core.rotations import IDENTITY, from_angles, to_angles
 from ffsr_plan.core.text_files import write_files
@@ -163,6 +170,11 @@ class SpaceRobot:
     def tree(self) -> Tree:
         """The kinematic tree, which computes poses of many configurations at once."""
         return Tree(self.model)
+
+    @cached_property
+    def bodies(self) -> Records:
+        """The links and their masses as arrays for compiled kernels."""
+        return self.tree.bodies(self.model)
 
     @cached_property
     def primitives(self) -> Primitives:
@@ -342,15 +354,12 @@ class SpaceRobot:
         finite_array(f"{what} (base position)", checked[:3], (3,), FARTHEST)
         checked[3:7] = unit_quaternion(f"{what} (base quaternion)", checked[3:7])
         for name, (i, nq) in zip(self.joint_names, self._slots, strict=True):
-            if nq == 1:
-                continue
-            if abs(float(np.hypot(*checked[i : i + 2])) - 1.0) > 1e-6:
-                raise InvalidInput(
-                    f"{what} (joint {name})", checked[i : i + 2].tolist(), "cosine and sine"
-                )
-            checked[i : i + 2] = normalised(checked[i : i + 2])
-        values = self.joint_values(checked)
-        self.check_limits(what, values)
+            pair = checked[i : i + nq]
+            if nq == 2:
+                if abs(float(np.hypot(*pair)) - 1.0) > 1e-6:
+                    raise InvalidInput(f"{what} (joint {name})", pair.tolist(), "cosine and sine")
+                checked[i : i + nq] = normalised(pair)
+        self.check_limits(what, self.joint_values(checked))
         return frozen(checked)
 
     def check_limits(self, what: str, joint_values: Array) -> None:
@@ -361,15 +370,11 @@ class SpaceRobot:
             return
         names = [self.joint_names[k] for k in wrong]
         ranges = [f"{self.lower[k]:g} to {self.upper[k]:g}" for k in wrong]
+        values = [float(joint_values[k]) for k in wrong]
         if len(wrong) == 1:
-            raise InvalidInput(
-                f"{what} (joint {names[0]})", float(joint_values[wrong[0]]), ranges[0]
-            )
-        raise InvalidInput(
-            f"{what} (joints {', '.join(names)})",
-            [float(joint_values[k]) for k in wrong],
-            ", ".join(f"{name} {limits}" for name, limits in zip(names, ranges, strict=True)),
-        )
+            raise InvalidInput(f"{what} (joint {names[0]})", values[0], ranges[0])
+        limits = ", ".join(f"{name} {each}" for name, each in zip(names, ranges, strict=True))
+        raise InvalidInput(f"{what} (joints {', '.join(names)})", values, limits)
 
     def save(self, path: str | Path) -> None:
         """Write the URDF, and the SRDF if there is one to a `.srdf` file beside it.

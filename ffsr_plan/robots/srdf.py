@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from xml.etree import ElementTree
 
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.checks import unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.urdf.joints import NO_JOINT
 from ffsr_plan.robots.urdf.number_texts import numbers
 from ffsr_plan.robots.urdf.xml_reading import parse

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.checks import unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.robots.locked_joints import fix_locked_joints
 from ffsr_plan.robots.srdf import disabled_pairs

@@ -11,7 +11,8 @@ from pathlib import Path
 from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.checks import unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.settings import from_mapping
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.plans.planner_registry import Planner

@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.checks import FARTHEST, LARGEST_NUMBER, finite_array
+from ffsr_plan.core.checks import FARTHEST, LARGEST_NUMBER, finite_array, unknown_name
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.cost_estimate import check_memory
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import read_text, reason, write_text
 
 COLUMNS = ("x", "y", "z", "radius")

@@ -70,7 +70,10 @@ class Interruption:
         Args:
             request: the same without.
         """
-        return request._replace(stop_requested=lambda: self.pressed, begin=self.begin)
+        deadline = request.deadline
+        if deadline is not None:
+            deadline = deadline.stopped_by(lambda: self.pressed)
+        return request._replace(deadline=deadline, begin=self.begin)
 
     def _receive(self, number: int, frame: FrameType | None) -> None:
         again, self.pressed = self.pressed, True
@@ -99,8 +102,10 @@ class Interruption:
             signal.signal(signal.SIGINT, self._handler)
         if not self.pressed:
             return
-        from ffsr_plan.core.errors import PlanningError  # with numpy, which a command loads later
+        from ffsr_plan.core.errors import OutOfTime, PlanningError  # with numpy: late on purpose
 
+        if isinstance(error, OutOfTime):
+            raise KeyboardInterrupt from None
         if isinstance(error, PlanningError) or (error is None and not self._returns):
             raise KeyboardInterrupt from error  # there is no plan to return, or it is not asked for
         if error is None:

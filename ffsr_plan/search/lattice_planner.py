@@ -8,15 +8,15 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import frozen
-from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
-from ffsr_plan.lattice.certificate import Certificate, Counts
-from ffsr_plan.lattice.optimum import lattice_optimum
+from ffsr_plan.core.errors import FfsrPlanError, InvalidInput, OutOfTime
+from ffsr_plan.lattice.certificate import Certificate, Counts, proven_clearance
+from ffsr_plan.lattice.optimum import optimum_or_bound
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.problem.memory_estimate import check_lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult, Solution
-from ffsr_plan.search.workers import run_on_workers
+from ffsr_plan.search.workers import in_process, run_on_workers
 
 
 class LatticePlanner(ABC):
@@ -45,6 +45,7 @@ class LatticePlanner(ABC):
 
         Raises:
             NoPath: there is none, with the layer that cannot be passed.
+            OutOfTime: none was found by the deadline of the monitor or of the roadmap.
             PlanningError: none was found.
         """
 
@@ -72,12 +73,13 @@ class LatticePlanner(ABC):
             InvalidInput: the lattice has posture axes.
             StartInCollision, GoalInCollision: with link, obstacle and depth.
             NoPath: the lattice holds no free path, with the layer that cannot be passed.
-            PlanningError: no path was found in time.
+            PlanningError: no path was found; `OutOfTime` if none was proven in time.
             WorkerDied: a worker process ended without a result.
         """
         self.refuse(problem)
         check_lattice(problem, self.bytes_per_edge, getattr(self, "ants", 0))
-        roadmap = Roadmap(problem)
+        roadmap = Roadmap(problem, request.deadline)
+        roadmap.deadline.stage = "the search for a path"
         if self.exact:  # it has no path before it ends
             result, counts = self.search(roadmap, rng), roadmap.counts()
             request.begin()
@@ -88,18 +90,21 @@ class LatticePlanner(ABC):
             result, counts = self._search_by_colonies(roadmap, rng, request)
         lattice, prover = roadmap.lattice, roadmap.prover
         objective = lattice_objective = roadmap.objective(result.path)
-        optimum = objective if self.exact else roadmap.objective(lattice_optimum(roadmap))
+        optimum, exact = (objective, True) if self.exact else optimum_or_bound(roadmap)
         offsets, clearances = lattice.offsets[result.path], roadmap.path_clearances(result.path)
-        length = roadmap.path_length(result.path)
+        length, cut_short = roadmap.path_length(result.path), not exact
         if request.refine is not False:
-            refined = refined_path(
-                lattice, prover, offsets, clearances, roadmap.nodes, request.stop_requested
+            refined, cut = refined_path(
+                lattice, prover, offsets, clearances, roadmap.nodes, roadmap.deadline
             )
+            cut_short |= cut
             if refined is not None:
                 offsets, clearances, length, objective, spent = refined
                 counts = counts.plus(spent)
         motion = lattice.nominal.displaced(offsets)
-        least = prover.least_clearance(motion.positions - lattice.nominal.positions, clearances)
+        roadmap.deadline.close()
+        moved = motion.positions - lattice.nominal.positions
+        least, cut = proven_clearance(prover, moved, clearances)
         indices = lattice.indices[result.path]
         return Solution(
             lattice=lattice,
@@ -109,11 +114,12 @@ class LatticePlanner(ABC):
             objective=objective,
             lattice_objective=lattice_objective,
             optimum=min(optimum, lattice_objective),  # equal paths may differ in the last digit
+            optimum_is_exact=exact,
             clearances=frozen(clearances),
             history=result.history,
             trails=result.trails,
             certificate=Certificate(*counts, least, problem.robot.unchecked_links),
-            interrupted=result.interrupted,
+            interrupted=result.interrupted or cut_short or cut,
         )
 
     def _search_by_colonies(
@@ -121,11 +127,11 @@ class LatticePlanner(ABC):
     ) -> tuple[SearchResult, Counts]:
         roadmap.evaluate_all()  # as every worker does, so that all counts are alike
         counts, rngs = roadmap.counts(), rng.spawn(request.colonies)
-        if request.workers == 1:
+        if in_process(request):
             outcomes = _run_colonies(roadmap, self, rngs, request.monitor())
         else:
             outcomes = run_on_workers(_colonies_of_worker, (roadmap.problem, self), rngs, request)
-        result = _best(roadmap, outcomes)
+        result = _best(roadmap, outcomes, request.colonies)
         return result, Counts(
             edges_free=sum(o.edges_free for o in outcomes),
             edges_refused=sum(o.edges_refused for o in outcomes),
@@ -149,7 +155,7 @@ def _colonies_of_worker(
     monitor: SearchMonitor,
 ) -> list[_Outcome]:
     problem, planner = job
-    return _run_colonies(Roadmap(problem), planner, rngs, monitor)
+    return _run_colonies(Roadmap(problem, monitor.deadline), planner, rngs, monitor)
 
 
 def _run_colonies(
@@ -170,15 +176,16 @@ def _run_colonies(
             result = error
         counts, queries = own.counts(), roadmap.prover.queries - before
         outcomes.append(_Outcome(result, counts.edges_free, counts.edges_refused, queries))
-        if monitor.stop_requested():
-            break  # by Ctrl-C: no more colonies
+        if monitor.expired():
+            break  # no more colonies
     return outcomes
 
 
-def _best(roadmap: Roadmap, outcomes: list[_Outcome]) -> SearchResult:
+def _best(roadmap: Roadmap, outcomes: list[_Outcome], colonies: int) -> SearchResult:
     """The best of all colonies, the first among equals; their error if none has a path."""
     results = [o.result for o in outcomes if isinstance(o.result, SearchResult)]
     if not results:
         raise next(o.result for o in outcomes if isinstance(o.result, FfsrPlanError))
     best = min(results, key=lambda result: roadmap.objective(result.path))
-    return best._replace(interrupted=any(result.interrupted for result in results))
+    cut_short = len(outcomes) < colonies or any(isinstance(o.result, OutOfTime) for o in outcomes)
+    return best._replace(interrupted=cut_short or any(result.interrupted for result in results))

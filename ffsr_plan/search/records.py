@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -13,6 +11,7 @@ from ffsr_plan.core.arrays import Array, IntArray, equal_by_content, frozen
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.time_limit.deadline import Deadline
 
 
 @equal_by_content
@@ -77,21 +76,27 @@ class SearchMonitor(NamedTuple):
 
     Attributes:
         on_cycle: called after each cycle, or None.
-        deadline: when to stop, by `time.monotonic()`.
-        stop_requested: asked often; whether the search is to end with what it has.
+        deadline: when to stop; None for never.
+        reserve: time that is needed after the search [s].
+        on_path: called with the best path every now and then, for proofs ahead of the end.
     """
 
     on_cycle: OnCycle | None = None
-    deadline: float = math.inf
-    stop_requested: Callable[[], bool] = bool
-
-    def past_deadline(self) -> bool:
-        """Whether the time is up."""
-        return time.monotonic() >= self.deadline
+    deadline: Deadline | None = None
+    reserve: Callable[[], float] = float
+    on_path: Callable[[IntArray], object] = len
 
     def expired(self) -> bool:
         """Whether the search has to end now."""
-        return self.past_deadline() or self.stop_requested()
+        deadline = self.deadline
+        if deadline is None:
+            return False
+        return deadline.stopped() or deadline.remaining() <= self.reserve()
+
+    def check(self) -> None:
+        """Raise `OutOfTime` if the search has to end now."""
+        if self.deadline is not None:
+            self.deadline.check()
 
 
 @equal_by_content
@@ -192,9 +197,8 @@ class SearchRequest(NamedTuple):
             possible.
         colonies: number of independent colonies.
         workers: number of processes that they are spread over.
-        time_limit: [s] for the search, from its beginning.
         on_cycle: called after each cycle of a single colony, or None.
-        stop_requested: asked often; whether the search is to end with what it has.
+        deadline: when all has to end, by the time limit or Ctrl-C; None for never.
         begin: called when the search begins, after the lattice has been set up.
         first: whether the first path that is proven free is enough.
     """
@@ -202,17 +206,15 @@ class SearchRequest(NamedTuple):
     refine: bool | None = None
     colonies: int = 1
     workers: int = 1
-    time_limit: float = math.inf
     on_cycle: OnCycle | None = None
-    stop_requested: Callable[[], bool] = bool
+    deadline: Deadline | None = None
     begin: Callable[[], object] = bool
     first: bool = False
 
     def monitor(self) -> SearchMonitor:
         """The monitor of a search that begins now."""
         self.begin()
-        deadline = time.monotonic() + self.time_limit
-        return SearchMonitor(self.on_cycle, deadline, self.stop_requested)
+        return SearchMonitor(self.on_cycle, self.deadline)
 
 
 @equal_by_content
@@ -227,7 +229,9 @@ class Solution(NamedTuple):
         length: L of Eq. 6 [m].
         objective: F of Eq. 8 [length units].
         lattice_objective: F of the path on the lattice, before refinement.
-        optimum: F of the exact lattice optimum; with posture axes a lower bound on it.
+        optimum: F of the exact lattice optimum, or a lower bound on it.
+        optimum_is_exact: which of the two it is: a bound with posture axes, and where the search
+            for it was cut short.
         clearances: (m + 1,) least link-to-sphere distance at each node [m].
         history: progress of the search.
         trails: the edges that ants walked; without a lattice, those of the trees.
@@ -242,6 +246,7 @@ class Solution(NamedTuple):
     objective: float
     lattice_objective: float
     optimum: float
+    optimum_is_exact: bool
     clearances: Array
     history: History
     trails: Trails | Branches

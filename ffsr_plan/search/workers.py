@@ -11,7 +11,7 @@ import os
 import signal
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import wait
+from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -22,6 +22,7 @@ from ffsr_plan.core.errors import WorkerDied
 from ffsr_plan.core.kernels import announcement
 from ffsr_plan.core.kernels.compiling_time import Stopwatch, add_compiled
 from ffsr_plan.search.records import SearchMonitor, SearchRequest
+from ffsr_plan.time_limit.deadline import Deadline
 
 Job = TypeVar("Job")
 Outcome = TypeVar("Outcome")
@@ -31,9 +32,19 @@ if TYPE_CHECKING:
     # numpy loads its generators when they are first named
     Run = Callable[[Job, list[np.random.Generator], SearchMonitor], list[Outcome]]
 
-_POLL = 0.2  # [s] between checks for results and Ctrl-C
+_POLL = 0.01  # [s] between checks for results, Ctrl-C and the time
+_STARTING = 3.0  # [s] that starting processes may take; with less time, colonies run in this one
+_POLL_IN_WORKER = 0.001  # [s] between two looks at the caller and its event
 _stop_event: Any = None  # in a worker: set by the caller when Ctrl-C was pressed
+_begun: Any = None  # in a worker: set by it when it begins to work
 _caller = 0  # in a worker: the process that started it
+_stopped, _next_poll = False, 0.0  # in a worker: the event when last looked at, and when next
+
+
+def in_process(request: SearchRequest) -> bool:
+    """Whether colonies run in this process: with one worker, or too little time to start more."""
+    deadline = request.deadline or Deadline()
+    return request.workers == 1 or deadline.remaining() < _STARTING
 
 
 def run_on_workers(
@@ -44,15 +55,17 @@ def run_on_workers(
 ) -> list[Outcome]:
     """One outcome for each generator, in their order, whatever the number of workers.
 
+    The deadline counts from the caller's beginning, so that starting processes is part of it.
+
     Args:
         run: a function of a module, called in a worker with the job, its share of the generators
             and a monitor; returns one outcome a generator, fewer if it was stopped.
         job: whatever `run` needs; it has to be picklable.
         rngs: one a colony.
-        request: number of processes, stopping condition, and the time for the searches of each
-            worker from when it has started.
+        request: number of processes, and the deadline.
 
     Raises:
+        OutOfTime: no process had started by the deadline.
         WorkerDied: with the worker's number, its colonies and its exit status.
     """
     from loky import ProcessPoolExecutor
@@ -61,23 +74,27 @@ def run_on_workers(
 
     workers = min(request.workers, len(rngs))
     shares = [list(range(w, len(rngs), workers)) for w in range(workers)]
-    stop, token = get_context("loky").Event(), get_context("loky").Lock()
+    context, deadline = get_context("loky"), request.deadline or Deadline()
+    deadline.stage = f"the start of {workers} worker processes, or their search"
+    stop, token = context.Event(), context.Lock()
     announcement.share(token)
-    setting = (stop, token, os.getpid())
-    executors = [ProcessPoolExecutor(1, initializer=_start, initargs=setting) for _ in shares]
+    begun = [context.Event() for _ in shares]
+    settings = [(stop, token, own, os.getpid()) for own in begun]
+    executors = [ProcessPoolExecutor(1, initializer=_start, initargs=each) for each in settings]
     try:
         with _ctrl_c_blocked():
+            limit = deadline.handed_on()
             futures = [
-                executor.submit(_run_share, run, job, [rngs[k] for k in share], request.time_limit)
+                executor.submit(_run_share, run, job, [rngs[k] for k in share], limit)
                 for executor, share in zip(executors, shares, strict=True)
             ]
         request.begin()
-        while wait(futures, timeout=_POLL).not_done:
-            if request.stop_requested():
-                stop.set()
+        _wait(futures, begun, stop, deadline)
         outcomes: dict[int, Outcome] = {}
         compiling = 0.0
         for worker, (share, future) in enumerate(zip(shares, futures, strict=True)):
+            if not future.done():
+                continue
             try:
                 own, seconds = future.result()
             except TerminatedWorkerError as error:
@@ -87,7 +104,19 @@ def run_on_workers(
         add_compiled(compiling)
     finally:
         _end(executors)
+    if not outcomes:
+        deadline.check()
     return [outcomes[k] for k in sorted(outcomes)]
+
+
+def _wait(futures: list[Future[Any]], begun: list[Any], stop: Any, deadline: Deadline) -> None:  # noqa: ANN401 - of loky
+    """Wait for all that have begun: these end by themselves at the deadline."""
+    while waiting := wait(futures, timeout=_POLL).not_done:
+        if deadline.stopped():
+            stop.set()
+        late = [k for k, future in enumerate(futures) if future in waiting]
+        if deadline.passed() and not any(begun[k].is_set() for k in late):
+            return
 
 
 @contextmanager
@@ -114,26 +143,34 @@ def _end(executors: list[ProcessPoolExecutor]) -> None:
         raise interrupt
 
 
-def _start(stop: Any, token: announcement.Token, caller: int) -> None:  # noqa: ANN401 - of loky
-    global _stop_event, _caller
+def _start(stop: Any, token: announcement.Token, begun: Any, caller: int) -> None:  # noqa: ANN401 - of loky
+    global _stop_event, _begun, _caller
     announcement.share(token)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _stop_event, _caller = stop, caller
+    _stop_event, _begun, _caller = stop, begun, caller
 
 
 def _run_share(
-    run: Run[Job, Outcome], job: Job, rngs: list[np.random.Generator], time_limit: float
+    run: Run[Job, Outcome],
+    job: Job,
+    rngs: list[np.random.Generator],
+    limit: tuple[float, float],
 ) -> tuple[list[Outcome], float]:
     """The outcomes, and the time that was spent compiling [s]."""
-    deadline, watch = time.monotonic() + time_limit, Stopwatch()
-    outcomes = run(job, rngs, SearchMonitor(None, deadline, _stop_requested))
+    _begun.set()
+    watch, deadline = Stopwatch(), Deadline.taken_over(limit, _stop_requested)
+    outcomes = run(job, rngs, SearchMonitor(None, deadline))
     return outcomes, watch.compiling
 
 
 def _stop_requested() -> bool:
-    if os.getppid() != _caller:
-        os._exit(1)
-    return bool(_stop_event.is_set())
+    """Whether Ctrl-C was pressed; ends this process where its caller has died."""
+    global _stopped, _next_poll
+    if time.monotonic() >= _next_poll:
+        if os.getppid() != _caller:
+            os._exit(1)
+        _stopped, _next_poll = bool(_stop_event.is_set()), time.monotonic() + _POLL_IN_WORKER
+    return _stopped
 
 
 def _exit_status(error: Exception) -> str:

@@ -9,8 +9,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.checks import number
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.checks import number, unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, Rule
 from ffsr_plan.core.settings import settings
 from ffsr_plan.dynamics.actuation_mode import Mode

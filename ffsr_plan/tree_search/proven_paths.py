@@ -129,6 +129,7 @@ class ProvenPaths:
             objective=best.objective,
             lattice_objective=best.objective,
             optimum=min(least_objective(problem), best.objective),
+            optimum_is_exact=False,
             clearances=best.proof.clearances,
             history=History.of_rows(np.array(self._rows)),
             trails=self._branches(trees),

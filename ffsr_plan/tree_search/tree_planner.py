@@ -66,7 +66,7 @@ class TreePlanner(TreeSettings):
             raise InvalidInput("colonies", request.colonies, "1 without a lattice")
         begin = time.perf_counter()
         rounds = SearchRounds(problem, self, rng, request.monitor())
-        limited = np.isfinite(request.time_limit)
+        limited = request.deadline is not None and request.deadline.is_limited
         checks = self.checks or (MOST_CHECKS if limited else _DEFAULT_CHECKS)
         interrupted = rounds.run(checks, request.first)
         return rounds.solution(interrupted, time.perf_counter() - begin)

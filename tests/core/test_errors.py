@@ -7,7 +7,9 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.core import errors
+from ffsr_plan.core.checks import unknown_name
 from ffsr_plan.core.contacts import Contact
+from ffsr_plan.core.formatting import nearest_name
 
 TOUCHING = (Contact("a", 3, 0.2, "x.stl"), Contact("a", 4, 0.1, "x.stl"), Contact("a", "b", 0.1))
 EXAMPLES = [
@@ -95,7 +97,7 @@ def test_messages_say_what_happened(error, message):
 
 
 def test_the_most_similar_name_is_suggested():
-    error = errors.unknown_name("robot", "pont", ["point", "satellite"])
+    error = unknown_name("robot", "pont", ["point", "satellite"])
     assert "did you mean 'point'?" in str(error)
 
 
@@ -112,13 +114,13 @@ def test_the_most_similar_name_is_suggested():
     ],
 )
 def test_a_name_is_suggested_only_where_it_is_close(value, names, nearest):
-    assert errors.nearest_name(value, names) == nearest
-    assert ("did you mean" in str(errors.unknown_name("x", value, names))) == (nearest is not None)
+    assert nearest_name(value, names) == nearest
+    assert ("did you mean" in str(unknown_name("x", value, names))) == (nearest is not None)
 
 
 def test_where_there_is_no_name_the_message_says_so():
-    assert str(errors.unknown_name("x", "a", [], "no joint")).endswith("allowed: no joint")
-    assert str(errors.unknown_name("x", "a", ["b"], "no joint")).endswith("allowed: b")
+    assert str(unknown_name("x", "a", [], "no joint")).endswith("allowed: no joint")
+    assert str(unknown_name("x", "a", ["b"], "no joint")).endswith("allowed: b")
 
 
 def test_a_message_is_one_short_line_whatever_it_quotes():

@@ -14,6 +14,7 @@ from tests.helpers.mutated_tables import mutated
 MUTATIONS = 200  # of each of three plans
 STATED_ONLY = {
     "seed", "history", "trails", "planner", "interrupted", "seconds", "optimum", "tolerance",
+    "optimum_is_exact",
     "edges_free", "edges_refused", "node_queries", "edge_queries", "excess",
 }  # fmt: skip
 """What `Report.not_checked` lists."""

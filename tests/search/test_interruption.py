@@ -96,13 +96,14 @@ def test_ctrl_c_during_the_refinement_keeps_the_plan(problem, monkeypatch):
 
     def pressed(search, candidates):
         rounds.append(candidates)
-        press()
+        if len(rounds) == 2:
+            press()
         return best_path(search, candidates)
 
     monkeypatch.setattr(BandSearch, "best_path", pressed)
     plan = fp.plan(replace(problem, delta=0.0), fp.MaxMinAntSystem(cycles=20))
     assert plan.interrupted
-    assert len(rounds) == 1
+    assert len(rounds) == 2
     assert plan.objective < plan.lattice_objective
     assert plan.verify(20).ok
 
@@ -142,7 +143,7 @@ def test_a_ctrl_c_that_a_library_swallows_is_raised_later(problem, monkeypatch):
         with suppress(KeyboardInterrupt):
             press()
 
-    monkeypatch.setattr(lattice_planner, "Roadmap", lambda p: swallowing() or Roadmap(p))
+    monkeypatch.setattr(lattice_planner, "Roadmap", lambda *given: swallowing() or Roadmap(*given))
     for choice in ("return", "raise"):
         with pytest.raises(KeyboardInterrupt):
             fp.plan(problem, fp.LatticeOptimum(), on_interrupt=choice)

@@ -34,6 +34,7 @@ from ffsr_plan.search.postures.path_proof import corners, prove_path
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
 from ffsr_plan.search.records import SearchMonitor
+from ffsr_plan.time_limit.deadline import Deadline
 from tests.helpers.spatial_robot import spatial_problem
 
 BINS, FINEST = 81, 161
@@ -122,7 +123,7 @@ def colony_run(
     by_ants = [0]
     monitor = SearchMonitor(
         on_cycle=lambda _: by_ants.append(int(queries[0])),
-        stop_requested=lambda: bool(queries[0] >= budget),
+        deadline=Deadline(stop_requested=lambda: bool(queries[0] >= budget)),
     )
     begin = time.process_time()
     colony = PostureColony(lattice, grid, settings, np.random.default_rng(seed))

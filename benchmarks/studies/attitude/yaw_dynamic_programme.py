@@ -22,8 +22,8 @@ import numpy as np
 from numba import njit
 
 from ffsr_plan.robots.shape_arrays import ROUND
-from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
 from ffsr_plan.search.postures.ant_tour_kernels import cost_to_go
+from ffsr_plan.search.postures.colony import AnnealingSettings
 from ffsr_plan.search.postures.cost_kernels import (
     FREE_ATTITUDE_ERROR,
     angle_to,

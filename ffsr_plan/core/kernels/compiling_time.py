@@ -1,9 +1,11 @@
-"""The time that compiling kernels takes, so that it can be told apart from computing."""
+"""The time that kernels take before they run, so that it can be told apart from computing."""
 
 from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -14,6 +16,8 @@ class _Account(threading.local):
     begin = 0.0
     seconds = 0.0
     kernels = 0
+    loading = False
+    loaded = 0.0
 
 
 _account = _Account()
@@ -41,6 +45,25 @@ def add_compiled(seconds: float) -> None:
         seconds: by which they delayed the result [s].
     """
     _account.seconds += seconds
+
+
+@contextmanager
+def loading() -> Iterator[None]:
+    """The body loads what kernels need; inside another such body or while compiling, it is part."""
+    if _account.loading or _account.depth:
+        yield
+        return
+    begin, _account.loading = time.perf_counter(), True
+    try:
+        yield
+    finally:
+        _account.loading = False
+        _account.loaded += time.perf_counter() - begin
+
+
+def spent_on_kernels() -> float:
+    """Time [s] that this thread has spent compiling and loading kernels."""
+    return _account.seconds + _account.loaded
 
 
 class Stopwatch:

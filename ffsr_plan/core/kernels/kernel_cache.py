@@ -17,6 +17,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from ffsr_plan.core.kernels.compiling_time import loading
+
 _PACKAGE = Path(__file__).resolve().parents[2]
 _IMPORT = re.compile(
     rf"^(?:from|import) ({_PACKAGE.name}\b[\w.]*)(?: import (?:\(([^)]*)\)|(.*)))?", re.MULTILINE
@@ -44,7 +46,8 @@ def keep_on_disk(dispatcher: Any) -> bool:  # noqa: ANN401 - its type depends on
 
         def load_overload(self, *arguments: object) -> object:
             try:
-                return super().load_overload(*arguments)
+                with loading():
+                    return super().load_overload(*arguments)
             except Exception:  # a damaged file raises errors of many types
                 with suppress(OSError):
                     self.flush()

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from typing import NamedTuple
 from xml.etree import ElementTree
 
-from ffsr_plan.core.errors import unknown_name
+from ffsr_plan.core.checks import unknown_name
 from ffsr_plan.robots.urdf.xml_reading import EXPAND, placed, refused
 
 _MANY = 100_000

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from ffsr_plan.core.errors import InvalidInput, unknown_name
+from ffsr_plan.core.checks import unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.urdf.xml_reading import placed, refused
 
 _RESERVED_JOINTS = ("universe", "root_joint")

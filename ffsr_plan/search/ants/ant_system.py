@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, ClassVar
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
-from ffsr_plan.core.errors import InternalError, PlanningError
+from ffsr_plan.core.errors import InternalError, OutOfTime
 from ffsr_plan.core.setting_rules import Number, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.edge_states import REFUSED, UNKNOWN
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
+from ffsr_plan.time_limit.deadline import Deadline
 
 _LEAST_PHEROMONE = 1e-300  # pheromone never underflows to zero, so that log(tau) exists
 
@@ -57,6 +57,7 @@ class AntSystem(LatticePlanner):
 
         Raises:
             NoPath: proven, when every edge that leaves the start has been refused.
+            OutOfTime: no ant had a path by the deadline.
         """
         monitor = monitor or SearchMonitor()
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
@@ -65,22 +66,26 @@ class AntSystem(LatticePlanner):
         tau = np.full((m, n, n), self.C)
         walked, laid = np.zeros((m, n, n), dtype=np.int64), np.zeros((m, n, n))
         edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
-        along = np.broadcast_to(np.arange(m + 1), (self.ants, m + 1))
         records: list[tuple[float, float, float, int]] = []
         best, best_path = np.inf, np.zeros(m + 1, dtype=np.int64)
         interrupted = False
         for cycle in range(1, self.cycles + 1):
-            paths = walk.tours(tau, monitor.stop_requested)
-            if paths is None:
-                interrupted = True
-                break
+            try:
+                paths = walk.tours(tau, monitor.deadline)
+            except OutOfTime:
+                interrupted, paths = True, walk.finished
+                if not len(paths) and not records:
+                    raise
+                if not len(paths):
+                    break
+            along = np.broadcast_to(np.arange(m + 1), paths.shape)
             costs = edge_costs[paths[:, :-1], paths[:, 1:]].sum(axis=1)
             costs += node_costs[along, paths].sum(axis=1)
             leader = int(np.argmin(costs))
             if costs[leader] < best:
                 best, best_path = float(costs[leader]), paths[leader].copy()
             edges = (along[:, :-1], paths[:, :-1], paths[:, 1:])
-            deposit = np.broadcast_to((self.Q / costs)[:, None], (self.ants, m))
+            deposit = np.broadcast_to((self.Q / costs)[:, None], (len(paths), m))
             tau *= self.rho
             np.add.at(tau, edges, deposit)
             np.maximum(tau, _LEAST_PHEROMONE, out=tau)
@@ -88,15 +93,13 @@ class AntSystem(LatticePlanner):
             np.add.at(walked, edges, 1)
             distinct = len(np.unique(paths, axis=0))
             records.append((best, float(costs[leader]), float(np.mean(costs)), distinct))
-            if monitor.on_cycle is not None:
+            if monitor.on_cycle is not None and not interrupted:
                 counts = np.zeros((m + 1, n), dtype=np.int64)
                 np.add.at(counts, (along, paths), 1)
                 monitor.on_cycle(Cycle(cycle, self.cycles, *records[-1], best_path, counts, tau))
-            interrupted = monitor.expired() and distinct > 1 and cycle < self.cycles
+            interrupted |= monitor.expired() and distinct > 1 and cycle < self.cycles
             if distinct == 1 or interrupted:
                 break
-        if not records:
-            raise PlanningError("stopped before the first cycle was done")
         trails = _trails(walked, laid, tau)
         return SearchResult(
             frozen(best_path), History.of_rows(np.array(records)), trails, interrupted
@@ -118,27 +121,36 @@ class Walk:
         self._roadmap, self._rng, self._alpha = roadmap, rng, settings.alpha
         steps = np.maximum(roadmap.lattice.steps, 1e-12)  # a step of no length at all stays visible
         self._log_visibility = -settings.beta * np.log(steps)
-        self._open_edges, self._open_counts = find_open_edges(roadmap.admissible, roadmap.status)
+        self._open_edges, self._open_counts = find_open_edges(
+            roadmap.admissible, roadmap.status, roadmap.deadline
+        )
         self._roulettes = np.empty((m, n, n))
         self._changed = np.ones((m, n), dtype=bool)
         self._paths = np.full((settings.ants, m + 1), roadmap.lattice.origin, dtype=np.int64)
+        self._done = 0
 
-    def tours(self, tau: Array, stop_requested: Callable[[], bool] = bool) -> IntArray | None:
+    @property
+    def finished(self) -> IntArray:
+        """(k, m + 1) the paths of the k ants that have got to the goal in the present cycle."""
+        return self._paths[: self._done]
+
+    def tours(self, tau: Array, deadline: Deadline | None = None) -> IntArray:
         """(ants, m + 1) free paths drawn by Eq. 11; valid until the next call.
 
         Args:
             tau: (m, n, n) pheromone.
-            stop_requested: asked after each proof; if so, there are no paths.
+            deadline: looked at after each proof.
 
         Raises:
             NoPath: the start has become a dead end.
+            OutOfTime: at the deadline; `finished` has the paths so far.
         """
         from ffsr_plan.search.ants.ant_system_kernels import walk
         from ffsr_plan.search.ants.open_edges import close_refused
 
         roadmap, paths = self._roadmap, self._paths
         self._changed[:] = True
-        ant, layer = 0, -1
+        ant, layer, self._done = 0, -1, 0
         while True:
             ant, layer = walk(
                 self._rng,
@@ -154,6 +166,7 @@ class Walk:
                 ant,
                 layer,
             )
+            self._done = max(ant, 0)
             if ant == len(paths):
                 return paths
             if ant < 0:
@@ -167,8 +180,8 @@ class Walk:
                 close_refused(
                     layer, roadmap.status, self._open_edges, self._open_counts, self._changed
                 )
-            if stop_requested():
-                return None
+            if deadline is not None:
+                deadline.check()
 
 
 def _trails(walked: IntArray, laid: Array, tau: Array) -> Trails:

@@ -8,19 +8,21 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
-from ffsr_plan.core.errors import InternalError, PlanningError
+from ffsr_plan.core.errors import InternalError, OutOfTime, PlanningError
 from ffsr_plan.core.setting_rules import Number, Truth, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.search.lattice_planner import LatticePlanner
 from ffsr_plan.search.records import Cycle, History, SearchMonitor, SearchResult, Trails
+from ffsr_plan.time_limit.deadline import Deadline
 
 if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colony runs
     from ffsr_plan.search.ants.max_min_kernels import State
 
 _LARGE_LAYER = 100  # nodes; from this size on pheromone lies on nodes, not on edges
+_EDGES_AT_ONCE = 300_000  # whose visibility is worked out between two looks at the deadline
 _MOST_TRAILS = 10_000  # edges whose trails are kept for pictures
-_MOST_CYCLES_PER_CHECK, _SECONDS_PER_CHECK = 16, 0.05  # between two checks of time and Ctrl-C
+_MOST_CYCLES_PER_CHECK, _SECONDS_PER_CHECK = 16, 0.002  # between two looks at the deadline
 
 
 @settings
@@ -64,43 +66,54 @@ class MaxMinAntSystem(LatticePlanner):
 
         Raises:
             NoPath: proven, when every edge that leaves the start has been refused.
+            OutOfTime: no path was proven by the deadline.
             PlanningError: no ant found a path, which does not prove that there is none.
         """
-        from ffsr_plan.search.ants import max_min_kernels as kernel
-        from ffsr_plan.search.ants.open_edges import find_open_edges
+        from ffsr_plan.search.ants.max_min_kernels import BEST, CYCLE, DONE, run_cycles
 
         monitor = monitor or SearchMonitor()
+        state, open_counts = self._prepared(roadmap)
+        until, stride, interrupted = 0, 1, False
+        try:
+            while until < self.cycles:
+                begin, until = time.monotonic(), min(until + stride, self.cycles)
+                while run_cycles(rng, until, state) != DONE:
+                    if not roadmap.prove_path(state.candidate):
+                        _close_refused(roadmap, state, open_counts)
+                    monitor.check()
+                if monitor.on_cycle is not None:
+                    monitor.on_cycle(_report(state, self.cycles))
+                elif time.monotonic() - begin < _SECONDS_PER_CHECK:
+                    stride = min(2 * stride, _MOST_CYCLES_PER_CHECK)
+                elif time.monotonic() - begin > 2.0 * _SECONDS_PER_CHECK:
+                    stride = max(stride // 2, 1)
+                if until < self.cycles:
+                    monitor.check()
+        except OutOfTime:
+            interrupted = True
+            if not _found(roadmap, rng, state):
+                raise
+        if not np.isfinite(state.values[BEST]):
+            raise roadmap.no_path() or PlanningError(
+                f"none of {self.ants} ants found a free path in {state.counters[CYCLE]} "
+                "cycles, which does not prove that there is none: more cycles may find one"
+            )
+        history = History.of_rows(state.records[: state.counters[CYCLE]])
+        return SearchResult(frozen(state.best_path), history, _trails(state), interrupted)
+
+    def _prepared(self, roadmap: Roadmap) -> tuple[State, IntArray]:
+        """The state before the first cycle, and how many open edges leave each node."""
+        from ffsr_plan.search.ants.open_edges import find_open_edges
+
         roadmap.prove_obvious()
-        open_edges, open_counts = find_open_edges(roadmap.admissible, roadmap.status)
+        open_edges, open_counts = find_open_edges(
+            roadmap.admissible, roadmap.status, roadmap.deadline
+        )
         if open_counts[0, roadmap.lattice.origin] == 0:
             raise roadmap.no_path() or InternalError(
                 "no open edge at the start, but the roadmap has a path"
             )
-        state = self._state(roadmap, open_edges)
-        until, stride, interrupted = 0, 1, False
-        while until < self.cycles and not interrupted:
-            begin, until = time.monotonic(), min(until + stride, self.cycles)
-            while kernel.run_cycles(rng, until, state) != kernel.DONE:
-                if not roadmap.prove_path(state.candidate):
-                    _close_refused(roadmap, state, open_counts)
-                found = np.isfinite(state.values[kernel.BEST])
-                if monitor.stop_requested() or (found and monitor.past_deadline()):
-                    interrupted = True
-                    break
-            if monitor.on_cycle is not None and not interrupted:
-                monitor.on_cycle(_report(state, self.cycles))
-            interrupted |= monitor.expired() and until < self.cycles
-            if monitor.on_cycle is None and time.monotonic() - begin < _SECONDS_PER_CHECK:
-                stride = min(2 * stride, _MOST_CYCLES_PER_CHECK)
-        if not np.isfinite(state.values[kernel.BEST]):
-            raise (None if interrupted else roadmap.no_path()) or PlanningError(
-                f"none of {self.ants} ants found a free path in {state.counters[kernel.CYCLE]} "
-                "cycles, which does not prove that there is none: more cycles may find one"
-            )
-        done = state.records[: state.counters[kernel.CYCLE]]
-        history = History.of_rows(done)
-        trails = _trails(state)
-        return SearchResult(frozen(state.best_path), history, trails, interrupted)
+        return self._state(roadmap, open_edges), open_counts
 
     def _state(self, roadmap: Roadmap, open_edges: Flags) -> State:
         from ffsr_plan.search.ants.local_search_kernels import neighbourhood
@@ -108,7 +121,7 @@ class MaxMinAntSystem(LatticePlanner):
 
         m, n = roadmap.lattice.divisions, roadmap.lattice.size
         edge_costs, node_costs = roadmap.edge_costs(), roadmap.node_costs()
-        visibility = self._visibility(edge_costs, node_costs) * open_edges
+        visibility = self._visibility(edge_costs, node_costs, open_edges, roadmap.deadline)
         chance = 0.05 ** (1.0 / m)
         least = (1.0 - chance) / (12.0 * chance)
         patience = self.patience or np.inf
@@ -121,7 +134,7 @@ class MaxMinAntSystem(LatticePlanner):
             open_edges=open_edges,
             status=roadmap.status,
             visibility=visibility,
-            visibility_roulettes=np.cumsum(visibility, axis=2),
+            visibility_roulettes=_summed(visibility, roadmap.deadline),
             near=neighbourhood(indices, wide=False),
             wide=neighbourhood(indices, wide=True),
             rho=self.rho,
@@ -144,17 +157,48 @@ class MaxMinAntSystem(LatticePlanner):
             values=np.array([np.inf, np.inf, np.inf, 1.0]),
             records=np.zeros((self.cycles, 4)),
             walked=np.zeros((m, n, n), dtype=np.int64),
+            left=np.zeros((m, n), dtype=bool),
             laid=np.zeros((m, n, n)),
         )
 
-    def _visibility(self, edge_costs: Array, node_costs: Array) -> Array:
-        """(m, n, n) eta^beta, eta = 1 / (d_pq + delta / d_imin)."""
+    def _visibility(
+        self, edge_costs: Array, node_costs: Array, open_edges: Flags, deadline: Deadline
+    ) -> Array:
+        """(m, n, n) eta^beta, eta = 1 / (d_pq + delta / d_imin), zero on closed edges."""
         n = len(edge_costs)
         beta = (2.0 if n < _LARGE_LAYER else 5.0) if self.beta is None else self.beta
         seen = np.where(np.isfinite(node_costs[1:]), node_costs[1:], 0.0) * float(self.cost_aware)
-        cost = np.maximum(edge_costs[None] + seen[:, None, :], 1e-12)
-        cost /= cost.min()
-        return np.asarray(1.0 / cost**2 if beta == 2.0 else cost**-beta)
+        least = np.min(np.maximum(edge_costs.min(axis=0) + seen, 1e-12))  # of all edges' costs
+        result = np.empty((len(seen), n, n))
+        for layers in _blocks(len(seen), n):
+            deadline.check()
+            cost = np.maximum(edge_costs + seen[layers, None], 1e-12) / least
+            result[layers] = (1.0 / cost**2 if beta == 2.0 else cost**-beta) * open_edges[layers]
+        return result
+
+
+def _found(roadmap: Roadmap, rng: np.random.Generator, state: State) -> bool:
+    """Whether a path has been proven; the last one, if its cycle is not done, is taken over."""
+    from ffsr_plan.search.ants.max_min_kernels import BEST, CYCLE, STAGE, run_cycles
+
+    if state.counters[STAGE] and roadmap.is_proven(state.candidate):
+        run_cycles(rng, int(state.counters[CYCLE]) + 1, state)
+    return bool(np.isfinite(state.values[BEST]))
+
+
+def _summed(visibility: Array, deadline: Deadline) -> Array:
+    """(m, n, n) sums along the last axis."""
+    result = np.empty_like(visibility)
+    for layers in _blocks(*visibility.shape[:2]):
+        deadline.check()
+        np.cumsum(visibility[layers], axis=2, out=result[layers])
+    return result
+
+
+def _blocks(m: int, n: int) -> list[slice]:
+    """The m layers of n^2 edges in blocks that take some milliseconds."""
+    layers = max(1, _EDGES_AT_ONCE // n**2)
+    return [slice(first, first + layers) for first in range(0, m, layers)]
 
 
 def _close_refused(roadmap: Roadmap, state: State, open_counts: IntArray) -> None:
@@ -194,7 +238,10 @@ def _trails(state: State) -> Trails:
     from ffsr_plan.search.ants.max_min_kernels import write_untouched_rows
 
     write_untouched_rows(state)
-    used = np.flatnonzero(state.walked)
+    rows = np.flatnonzero(state.left)  # other rows have not even been given memory
+    n = state.walked.shape[2]
+    found, heads = np.divmod(np.flatnonzero(state.walked.reshape(-1, n)[rows]), n)
+    used = rows[found] * n + heads
     if len(used) > _MOST_TRAILS:
         ants = state.walked.ravel()[used]
         used = np.sort(used[np.argsort(-ants, kind="stable")[:_MOST_TRAILS]])

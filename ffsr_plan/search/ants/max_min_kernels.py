@@ -80,6 +80,8 @@ class State(NamedTuple):
     """(cycles, 4) best F, best and mean F of the cycle, number of different walks."""
     walked: IntArray
     """(m, n, n) ants that walked each edge."""
+    left: Flags
+    """(m, n) whether an ant walked an edge from each node."""
     laid: Array
     """(m, n, n) pheromone laid."""
 
@@ -121,6 +123,7 @@ def _walk(rng: np.random.Generator, s: State) -> None:
                 length -= half
             paths[ant, i + 1] = low
             walked[i, p, low] += 1
+            s.left[i, p] = True
             cost += edge_costs[p, low] + node_costs[i + 1, low]
             p = low
         s.costs[ant] = cost

@@ -13,16 +13,29 @@ import numpy as np
 from ffsr_plan.core.arrays import Flags, IntArray, States
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
+from ffsr_plan.time_limit.deadline import Deadline
 
 
-def find_open_edges(admissible: Flags, status: States) -> tuple[Flags, IntArray]:
-    """`open_edges` and `open_counts` of a roadmap, dead ends closed."""
-    open_edges = admissible[:-1, :, None] & admissible[1:, None, :] & (status != REFUSED)
+def find_open_edges(
+    admissible: Flags, status: States, deadline: Deadline | None = None
+) -> tuple[Flags, IntArray]:
+    """`open_edges` and `open_counts` of a roadmap, dead ends closed.
+
+    Raises:
+        OutOfTime: at the deadline.
+    """
+    open_edges = np.empty(status.shape, dtype=bool)
+    open_counts = np.empty(status.shape[:2], dtype=np.int64)
     alive = np.ones(admissible.shape[1], dtype=bool)
     for layer in range(len(open_edges) - 1, -1, -1):
-        open_edges[layer] &= alive
-        alive = open_edges[layer].any(axis=1)
-    return open_edges, np.count_nonzero(open_edges, axis=2)
+        if deadline is not None:
+            deadline.check()
+        own = open_edges[layer]
+        np.logical_and(admissible[layer, :, None], admissible[layer + 1] & alive, out=own)
+        own &= status[layer] != REFUSED
+        open_counts[layer] = np.count_nonzero(own, axis=1)
+        alive = open_counts[layer] > 0
+    return open_edges, open_counts
 
 
 @kernel

@@ -33,7 +33,7 @@ from ffsr_plan.search.postures.cost_kernels import (
 )
 
 _FIRST_PART = 64  # shifts of an annealing between two checks of time and Ctrl-C, at first
-_SECONDS_OF_A_PART = 0.05  # up to which the next part is twice as long
+_SECONDS_OF_A_PART = 0.006  # up to which the next part is twice as long
 
 
 @kernel
@@ -195,7 +195,7 @@ def anneal(
         weights: (2,) of a radian by which the goal attitude is missed [m]: at the beginning, and
             from half of the iterations on, by which the best path is judged.
         best_path: (m + 1, 2) the best path, filled in.
-        stop_requested: asked several times a second; whether to end with the best path so far.
+        stop_requested: asked every few milliseconds; whether to end with the best path so far.
 
     Returns:
         The cost of the best path [m].
@@ -210,7 +210,11 @@ def anneal(
         done = until
         if stop_requested():
             break
-        part = 2 * part if time.monotonic() - begin < _SECONDS_OF_A_PART else part
+        seconds = time.monotonic() - begin
+        if seconds < _SECONDS_OF_A_PART:
+            part *= 2
+        elif seconds > 2.0 * _SECONDS_OF_A_PART:
+            part = max(part // 2, 1)
     return float(state.levels[0])
 
 

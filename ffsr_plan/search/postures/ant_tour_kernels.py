@@ -17,65 +17,97 @@ from ffsr_plan.search.postures.cost_kernels import (
     node_cost,
     step_between,
 )
+from ffsr_plan.time_limit.deadline import Deadline
+
+_NODES_AT_ONCE = 1024  # of a layer, that are worked out between two looks at the deadline
 
 
-def cost_to_go(grid: PostureGrid, nominal: Array) -> Array:
+def cost_to_go(grid: PostureGrid, nominal: Array, deadline: Deadline | None = None) -> Array:
     """(m + 1, b, n) least cost [m] from each node to the goal, every layer at one attitude.
 
     Args:
         grid: the lattice.
         nominal: (m + 1, 4) the attitudes.
+        deadline: after which `OutOfTime` is raised.
     """
+    deadline = deadline or Deadline()
     m, count, offsets = len(grid.rows) - 1, len(grid.successors), len(grid.across)
     ahead, own = np.full((m + 1, offsets, count), np.inf), np.empty((offsets, count))
     ahead[m, grid.origin[0], grid.origin[1]] = 0.0
-    for layer in range(m, -1, -1):  # in Python, so that Ctrl-C is received between two layers
-        add_layer(grid, nominal, layer, ahead, own)
+    for layer in range(m, -1, -1):
+        for add in (add_edges, add_nodes):
+            for first in range(0, offsets * count, _NODES_AT_ONCE):
+                deadline.check()
+                last = min(first + _NODES_AT_ONCE, offsets * count)
+                add(grid, nominal, layer, ahead, own, first, last)
     return ahead
 
 
 @kernel
-def add_layer(grid: PostureGrid, nominal: Array, i: int, ahead: Array, own: Array) -> None:
-    """Work out the cost to go from one layer.
+def add_edges(
+    grid: PostureGrid, nominal: Array, i: int, ahead: Array, own: Array, first: int, last: int
+) -> None:
+    """Work out the cost to go from nodes of one layer.
+
+    Args:
+        grid: the lattice.
+        nominal: (m + 1, 4) the attitudes, not used.
+        i: the layer; the one after it is worked out.
+        ahead: (m + 1, b, n) of `cost_to_go`, of which layer `i` is filled in.
+        own: (b, n) costs of the nodes of the layer after it [m].
+        first: number of the first node, base offset times n plus posture.
+        last: number behind the last one.
+    """
+    m, count, row = len(grid.rows) - 1, len(grid.successors), grid.rows[i]
+    offsets, steps = len(grid.across), grid.successors.shape[1]
+    if i == m:
+        return
+    for node in range(first, last):
+        b, p = node // count, node % count
+        if not grid.allowed[row, p]:
+            continue
+        for step in range(steps):
+            on = grid.successors[p, step]
+            if on < 0:
+                continue
+            for b_on in range(offsets):
+                rest = ahead[i + 1, b_on, on] + own[b_on, on]
+                if rest < ahead[i, b, p]:
+                    length = edge_length(
+                        grid.delta_d, grid.across[b, b_on], grid.squared_steps[row, p, step]
+                    )
+                    ahead[i, b, p] = min(ahead[i, b, p], rest + length)
+
+
+@kernel
+def add_nodes(
+    grid: PostureGrid, nominal: Array, i: int, ahead: Array, own: Array, first: int, last: int
+) -> None:
+    """Work out the costs of nodes of one layer.
 
     Args:
         grid: the lattice.
         nominal: (m + 1, 4) the attitudes.
-        i: the layer; the one after it is worked out.
-        ahead: (m + 1, b, n) of `cost_to_go`, of which layer `i` is filled in.
-        own: (b, n) costs of the nodes of the layer after it [m]; then those of layer `i`.
+        i: the layer.
+        ahead: (m + 1, b, n) of `cost_to_go`; layer `i` is worked out.
+        own: (b, n) costs of the nodes [m], filled in.
+        first: number of the first node, base offset times n plus posture.
+        last: number behind the last one.
     """
     m, count, row = len(grid.rows) - 1, len(grid.successors), grid.rows[i]
-    offsets, steps = len(grid.across), grid.successors.shape[1]
-    workspace, delta_d, free = new_workspace(), grid.delta_d, is_free(grid)
-    if i < m:
-        for b in range(offsets):
-            for p in range(count):
-                if not grid.allowed[row, p]:
-                    continue
-                for step in range(steps):
-                    on = grid.successors[p, step]
-                    if on < 0:
-                        continue
-                    for b_on in range(offsets):
-                        rest = ahead[i + 1, b_on, on] + own[b_on, on]
-                        if rest < ahead[i, b, p]:
-                            length = edge_length(
-                                delta_d, grid.across[b, b_on], grid.squared_steps[row, p, step]
-                            )
-                            ahead[i, b, p] = min(ahead[i, b, p], rest + length)
+    workspace, free = new_workspace(), is_free(grid)
     if i == 0:
         return
-    for b in range(offsets):
-        for p in range(count):
-            own[b, p] = 0.0
-            if ahead[i, b, p] < np.inf and not free:
-                frames, center = grid.frames[row, p], grid.centers[row, p]
-                grid.queries[0] += 1
-                clearance = clearance_at(
-                    grid.obstacles, frames, grid.places[i, b], center, nominal[i], workspace
-                )
-                own[b, p] = node_cost(grid.clearance_cost, clearance, i < m)
+    for node in range(first, last):
+        b, p = node // count, node % count
+        own[b, p] = 0.0
+        if ahead[i, b, p] < np.inf and not free:
+            frames, center = grid.frames[row, p], grid.centers[row, p]
+            grid.queries[0] += 1
+            clearance = clearance_at(
+                grid.obstacles, frames, grid.places[i, b], center, nominal[i], workspace
+            )
+            own[b, p] = node_cost(grid.clearance_cost, clearance, i < m)
 
 
 @kernel

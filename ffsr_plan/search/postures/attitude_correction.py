@@ -14,6 +14,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.time_limit.deadline import Deadline
 
 _DIFFERENCE = 1e-5  # of the finite differences, in units of the displacement
 _ITERATIONS = 20
@@ -28,6 +29,7 @@ def corrected(
     joint_values: Array,
     directions: Array,
     held: Flags | None = None,
+    deadline: Deadline | None = None,
 ) -> Array | None:
     """Joint values (m + 1, nd) whose reaction ends at the goal attitude; None without convergence.
 
@@ -38,7 +40,9 @@ def corrected(
         joint_values: (m + 1, nd) corners of a path whose reaction ends close to it.
         directions: (m + 1, axes, nd) along which each corner may be displaced.
         held: (m + 1,) corners that are to stay where they are; the first and the last do anyway.
+        deadline: after which `OutOfTime` is raised.
     """
+    deadline = deadline or Deadline()
     path = np.array(joint_values)
     free = np.ones(directions[1:-1].shape[:2], dtype=np.bool_)
     if held is not None:
@@ -47,9 +51,11 @@ def corrected(
     for _ in range(_ITERATIONS):
         if np.linalg.norm(missed) < _TOLERANCE:
             return path
+        deadline.check()
         slope = attitude_slopes(robot, path, directions, reaction.increments)
         share = 1.0
         while share >= _LEAST_STEP:
+            deadline.check()
             inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, share * missed, free)
             if inner is None:
                 return None
@@ -100,8 +106,8 @@ def attitude_slopes(robot: SpaceRobot, path: Array, directions: Array, increment
     corners = np.repeat(np.arange(1, m), axes)
     moved = path[1:-1, None] + _DIFFERENCE * directions[1:-1]
     moved = moved.reshape(-1, path.shape[1])
-    before = Reaction(robot, path[corners - 1], moved - path[corners - 1]).increments
-    behind = Reaction(robot, moved, path[corners + 1] - moved).increments
+    before = Reaction(robot, path[corners - 1], moved - path[corners - 1], inside=False).increments
+    behind = Reaction(robot, moved, path[corners + 1] - moved, inside=False).increments
     rest = [rotations.IDENTITY]  # from corner k + 1 to the end, backwards
     for increment in increments[:0:-1]:
         rest.append(rotations.multiply(increment, rest[-1]))

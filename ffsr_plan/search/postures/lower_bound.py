@@ -13,7 +13,10 @@ import numpy as np
 
 from ffsr_plan.collision.nearest_sphere_kernels import nearest_pairs
 from ffsr_plan.core.arrays import Array, frozen
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.core.rotations import IDENTITY, angle_between
+from ffsr_plan.lattice.optimum import straight_bound
+from ffsr_plan.lattice.shortest_path import LazyShortestPath
 from ffsr_plan.problem.objective import nearness
 from ffsr_plan.robots.shape_arrays import ROUND
 from ffsr_plan.scene.scene import Scene
@@ -21,23 +24,30 @@ from ffsr_plan.search.postures.posture_lattice import PostureLattice
 
 
 def lower_bound(lattice: PostureLattice) -> float:
-    """F that no path of the lattice falls below, in units of length."""
-    from ffsr_plan.lattice.shortest_path_kernel import extend
+    """F that no path of the lattice falls below, in units of length; coarse at the deadline."""
+    try:
+        return _bound(lattice)
+    except OutOfTime:
+        return straight_bound(lattice.problem)
 
+
+def _bound(lattice: PostureLattice) -> float:
     problem, base = lattice.problem, lattice.base
     m, count = problem.given_lattice.divisions, len(base.offsets)
     apart = np.full((m + 1, count), np.inf)
     if origin_is_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets
-        apart = _point_clearances(problem.scene, places.reshape(-1, 3)).reshape(m + 1, count)
+        apart = np.empty((m + 1, count))
+        for own, points in zip(apart, places, strict=True):
+            lattice.deadline.check()
+            own[:] = _point_clearances(problem.scene, points)
     nodes = nearness(problem, apart)  # at least that of `clearance_cap`
     nodes[[0, -1]] = 0.0
-    costs, before = np.full((m + 1, count), np.inf), np.zeros((m + 1, count), dtype=np.int64)
-    costs[0, base.origin] = 0.0
     status = np.zeros((m, count, count), dtype=np.int8)
     edges = base.steps[None] / problem.length_unit
-    extend(0, edges, nodes, status, costs, before)
-    return max(float(costs[m, base.origin]), _rotation_bound(lattice) / problem.length_unit)
+    search = LazyShortestPath(edges, nodes, status, base.origin, lattice.deadline)
+    search.path()
+    return max(search.least_cost, _rotation_bound(lattice) / problem.length_unit)
 
 
 def origin_is_inside(lattice: PostureLattice) -> bool:
@@ -68,6 +78,7 @@ def _rotation_bound(lattice: PostureLattice) -> float:
         return 0.0
     there, rates = lattice.successors >= 0, 0.0
     for rotated, squared in zip(lattice.step_rotations, lattice.squared_steps, strict=True):
+        lattice.deadline.check()
         angles: Array = angle_between(IDENTITY, rotated[there])
         lengths = np.sqrt(problem.delta_d**2 + squared[there])
         each = np.where(lengths > 0.0, angles / np.maximum(lengths, 1e-12), 0.0)

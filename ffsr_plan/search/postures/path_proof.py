@@ -91,13 +91,15 @@ def prove_path(lattice: PostureLattice, positions: Array, joints: Array) -> Path
     """
     problem = lattice.problem
     motion = Motion(problem.robot, problem.mode, problem.start, problem.goal, positions, joints)
-    prover, m = Prover(motion, problem.scene, problem.tolerance), len(positions) - 1
+    lattice.deadline.check()
+    prover = Prover(motion, problem.scene, problem.tolerance, lattice.deadline)
+    m = len(positions) - 1
     still = np.zeros(3)
     clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
+    ends, none = np.column_stack([clearances[:-1], clearances[1:]]), np.zeros((m, 3))
+    verdicts = prover.certify_all(np.arange(m), none, none, ends)
     refused = []
-    for layer, links in enumerate(prover.self_verdicts()):
-        ends = float(clearances[layer]), float(clearances[layer + 1])
-        verdict = prover.certify(layer, still, still, ends)
+    for layer, (verdict, links) in enumerate(zip(verdicts, prover.self_verdicts(), strict=True)):
         if not verdict.free:
             near = prover.nearest(layer, still, still, verdict.time)
         elif not links.free:
@@ -128,7 +130,7 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
     for _ in range(_CORRECTIONS):
         joints = corrected(
             problem.robot, problem.start[3:7], problem.goal[3:7], motion.joint_values, directions,
-            held,
+            held, lattice.deadline,
         )  # fmt: skip
         if joints is None:
             break
@@ -142,6 +144,21 @@ def corrected_proof(lattice: PostureLattice, proof: PathProof) -> tuple[PathProo
                 beside = slice(edge.layer + 3)
             held[beside] = True
     return proof, queries
+
+
+def least_clearance(proof: PathProof) -> tuple[float, int]:
+    """Proven lower bound on the clearance along a path that is free [m], and Coal queries.
+
+    Args:
+        proof: of the path.
+
+    Raises:
+        OutOfTime: at the deadline.
+    """
+    before = proof.prover.queries
+    still = np.zeros((len(proof.clearances), 3))
+    least = proof.prover.least_clearance(still, proof.clearances)
+    return least, proof.prover.queries - before
 
 
 def check_start(problem: Problem) -> None:

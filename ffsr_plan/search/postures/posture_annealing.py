@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import time
+from contextlib import nullcontext
 from typing import ClassVar
 
 import numpy as np
 
 from ffsr_plan.core.arrays import IntArray, frozen
-from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput
+from ffsr_plan.core.errors import AttitudeOutOfReach, FfsrPlanError, InvalidInput, OutOfTime
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.search.postures.annealing_settings import AnnealingSettings
-from ffsr_plan.search.postures.colony import PostureColony, PosturePath
+from ffsr_plan.search.postures.colony import AnnealingSettings, PostureColony, PosturePath
+from ffsr_plan.search.postures.early_proofs import EarlyProofs
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import (
     CORRECTABLE,
@@ -22,6 +22,7 @@ from ffsr_plan.search.postures.path_proof import (
     check_start,
     corners,
     corrected_proof,
+    least_clearance,
     length_of,
     objective_of,
     prove_path,
@@ -30,7 +31,8 @@ from ffsr_plan.search.postures.path_proof import (
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
 from ffsr_plan.search.records import History, SearchMonitor, SearchRequest, Solution
-from ffsr_plan.search.workers import run_on_workers
+from ffsr_plan.search.workers import in_process, run_on_workers
+from ffsr_plan.time_limit.deadline import Deadline
 
 _PROOF_ATTEMPTS = 25
 _SHIFTS_AFTER_REFUSAL = 500  # for each layer, in the annealing that goes on after a refused edge
@@ -75,6 +77,7 @@ class PostureAnnealing(AnnealingSettings):
         Raises:
             InvalidInput: no posture axes, axes that the robot does not have, or `refine=True`.
             StartInCollision: with link, obstacle and depth.
+            OutOfTime: no path was proven in time.
             AttitudeOutOfReach: the arms were not found to bring about the goal's attitude; with
                 the `Solution` that misses it least.
             UnprovenPath: what was found could not be proven free.
@@ -87,28 +90,42 @@ class PostureAnnealing(AnnealingSettings):
             )
         if request.colonies > 1:
             return self._best_of_colonies(problem, rng, request)
-        lattice = PostureLattice(problem)
-        check_start(problem)
-        monitor = request.monitor()
-        colony = PostureColony(lattice, posture_grid(lattice), self, rng)
+        lattice = _lattice(problem, request.deadline or Deadline())
+        request.begin()
+        colony, deadline = _colony(lattice, self, rng), lattice.deadline
+        early, proofs = EarlyProofs(lattice, colony, deadline), _Proofs(lattice, colony)
+        monitor = SearchMonitor(request.on_cycle, deadline, early.reserve, early.offer)
         result = colony.search(monitor)
-        proofs = _Proofs(lattice, colony)
-        path = result.path
-        for _ in range(_PROOF_ATTEMPTS):
-            proof = prove_path(lattice, *corners(lattice, path))
-            corrected, spent = corrected_proof(lattice, proof)
-            proofs.take(path, proof, corrected, spent)
-            if corrected.holds or result.interrupted or monitor.expired():
-                break
-            shifts = _SHIFTS_AFTER_REFUSAL * problem.given_lattice.divisions
-            path, _ = colony.annealed(path, shifts, *_TEMPERATURES_AFTER_REFUSAL, monitor.expired)
-        return proofs.solution(result)
+        path, cut_short = result.path, result.interrupted
+        if cut_short and (missing := colony.shortcomings(path)):
+            deadline.stage = f"the search, whose best path so far {missing}"
+        try:
+            for _ in range(0 if early.has(path) else _PROOF_ATTEMPTS):
+                first = proofs.is_empty and early.best is None
+                with deadline.without_stop() if first else nullcontext():  # so that there is a plan
+                    proof = prove_path(lattice, *corners(lattice, path))
+                    corrected, spent = corrected_proof(lattice, proof)
+                proofs.take(path, proof, corrected, proof.prover.queries + spent)
+                cut_short |= not corrected.holds and monitor.expired()
+                if corrected.holds or cut_short:
+                    break
+                shifts = _SHIFTS_AFTER_REFUSAL * problem.given_lattice.divisions
+                temperatures = _TEMPERATURES_AFTER_REFUSAL
+                path, _ = colony.annealed(path, shifts, *temperatures, monitor.expired)
+        except OutOfTime:
+            cut_short = True
+            if proofs.is_empty and early.best is None:
+                raise
+        if not proofs.hold and early.best is not None:
+            proofs.take(*early.best)
+        deadline.close()
+        return proofs.solution(result._replace(interrupted=cut_short))
 
     def _best_of_colonies(
         self, problem: Problem, rng: np.random.Generator, request: SearchRequest
     ) -> Solution:
         rngs, job = rng.spawn(request.colonies), (problem, self)
-        if request.workers == 1:
+        if in_process(request):
             outcomes = _run_colonies(job, rngs, request.monitor())
         else:
             outcomes = run_on_workers(_run_colonies, job, rngs, request)
@@ -117,7 +134,26 @@ class PostureAnnealing(AnnealingSettings):
             errors = [outcome for outcome in outcomes if isinstance(outcome, FfsrPlanError)]
             missed = [error for error in errors if isinstance(error, AttitudeOutOfReach)]
             raise min(missed, key=lambda error: error.missed) if missed else errors[0]
-        return min(solutions, key=lambda solution: solution.objective)
+        best = min(solutions, key=lambda solution: solution.objective)
+        cut_short = len(outcomes) < request.colonies
+        cut_short |= any(isinstance(outcome, OutOfTime) for outcome in outcomes)
+        cut_short |= any(solution.interrupted for solution in solutions)
+        return best._replace(interrupted=cut_short)
+
+
+def _lattice(problem: Problem, deadline: Deadline) -> PostureLattice:
+    """The lattice, after a check of the start."""
+    lattice = PostureLattice(problem, deadline)
+    check_start(problem)
+    return lattice
+
+
+def _colony(
+    lattice: PostureLattice, chosen: AnnealingSettings, rng: np.random.Generator
+) -> PostureColony:
+    colony = PostureColony(lattice, posture_grid(lattice), chosen, rng)
+    lattice.deadline.stage = "the search for a path"
+    return colony
 
 
 class _Proofs:
@@ -133,18 +169,27 @@ class _Proofs:
         self._last: PathProof | None = None
         self._best: tuple[IntArray, PathProof, float] | None = None
         # path, proof of its motion, F on the lattice; of the least goal attitude error
+        self._least: tuple[float, int] | None = None  # of the best path, where it is known already
 
-    def take(self, path: IntArray, proof: PathProof, corrected: PathProof, spent: int) -> None:
+    def take(
+        self,
+        path: IntArray,
+        proof: PathProof,
+        corrected: PathProof,
+        queries: int,
+        least: tuple[float, int] | None = None,
+    ) -> None:
         """Take note of a path (m + 1, 2).
 
         Args:
             path: the path.
             proof: of it.
             corrected: of its correction, or the same as `proof`.
-            spent: Coal queries of the correction.
+            queries: Coal queries of both.
+            least: what `least_clearance` gives for `corrected`, if it is known already.
         """
         self._last = proof
-        self._queries += proof.prover.queries + spent
+        self._queries += queries
         for edge in proof.refused:
             self._colony.refuse(edge.layer, path)
             self._refused += 1
@@ -154,6 +199,17 @@ class _Proofs:
             self._colony.demand(_LESS_FREE_ERROR * proof.attitude_error)
         if self._best is None or corrected.attitude_error < self._best[1].attitude_error:
             self._best = path, corrected, objective_of(self._lattice, proof)
+            self._least = least
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no path has been taken."""
+        return self._last is None
+
+    @property
+    def hold(self) -> bool:
+        """Whether a path was proven free that meets the goal attitude."""
+        return self._best is not None and self._best[1].holds
 
     def solution(self, result: PosturePath) -> Solution:
         """The best path.
@@ -170,9 +226,13 @@ class _Proofs:
             assert self._last is not None
             raise unproven(problem, self._last.refused[0], result.interrupted)
         path, proof, on_lattice = self._best
-        m, before = len(path) - 1, proof.prover.queries
-        least = proof.prover.least_clearance(np.zeros((m + 1, 3)), proof.clearances)
-        queries = self._queries + proof.prover.queries - before
+        m = len(path) - 1
+        try:
+            least, queries = self._least or least_clearance(proof)
+        except OutOfTime:
+            least, queries = 0.0, 0
+            result = result._replace(interrupted=True)
+        queries += self._queries
         nodes = m + 1 if np.isfinite(proof.clearances).all() else 0  # none in an empty scene
         certificate = Certificate(
             m, self._refused, nodes, queries - nodes, least, problem.robot.unchecked_links
@@ -202,6 +262,7 @@ def _solution(
         objective=objective_of(lattice, proof),
         lattice_objective=lattice_objective,
         optimum=min(lower_bound(lattice), lattice_objective),
+        optimum_is_exact=False,
         clearances=frozen(proof.clearances),
         history=_in_units(result.history, lattice.problem.length_unit),
         trails=result.trails,
@@ -218,15 +279,12 @@ def _run_colonies(
     outcomes: list[Solution | FfsrPlanError] = []
     for rng in rngs:
         try:
-            request = SearchRequest(
-                time_limit=monitor.deadline - time.monotonic(),
-                stop_requested=monitor.stop_requested,
-            )
+            request = SearchRequest(deadline=monitor.deadline)
             outcomes.append(planner.solve(problem, rng, request))
         except FfsrPlanError as error:
             outcomes.append(error)
-        if monitor.stop_requested():
-            break  # by Ctrl-C: no more colonies
+        if monitor.expired():
+            break  # no more colonies
     return outcomes
 
 

@@ -24,15 +24,19 @@ from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.time_limit.deadline import Deadline
 
 _BYTES_PER_STEP = 50  # rotation and squared length of a joint step, and its number
 _BYTES_PER_PHEROMONE = 8  # of a joint step on a layer
 _BYTES_PER_SHAPE = 120  # placement of a shape at a node
 _BYTES_PER_PLACED_SHAPE = 450  # while the shapes at the nodes of one layer are placed
 _BYTES_PER_OFFSET_EDGE = 30  # pheromone, ants and what they lay
-_STEPS_AT_ONCE = 1024  # joint steps whose reaction is integrated together, to limit memory
-_JOINT_STEP = 0.1  # [rad or m] for which the base reaction is worked out at eight points
-_SECONDS_PER_POINT = 1e-5  # for each joint, base reaction at one point
+_TOLERANCE = 1e-8  # [rad] of the reaction to a joint step; what is returned is integrated anew
+_STEPS_AT_ONCE = 256  # joint steps whose reaction is integrated between two looks at the clock
+_JOINT_STEP = 0.15  # [rad or m] that one substep of the base reaction suffices for
+_POINTS = 13  # of a substep
+_BYTES_PER_SUBSTEP = 150
+_SECONDS_PER_POINT = 2e-7  # for each joint, base reaction at one point
 _SECONDS_PER_PAIR = 4e-6  # distance of two links
 
 
@@ -41,6 +45,7 @@ class PostureLattice:
 
     Attributes:
         problem: what the lattice was built from.
+        deadline: after which whatever takes long raises `OutOfTime`.
         base: base offsets and the nominal motion, as on a lattice without posture axes.
         indices: (n, axes) index of each posture along each axis, 0 = not displaced.
         origin: the posture without displacement.
@@ -48,13 +53,17 @@ class PostureLattice:
         successors: (n, k) the postures within one step, -1 where there is none.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, deadline: Deadline | None = None) -> None:
         """Build the lattice.
+
+        Args:
+            problem: a problem with posture axes.
+            deadline: for this and for all arrays below; none by default.
 
         Raises:
             InvalidInput: it would take too much memory or computing time.
         """
-        self.problem = problem
+        self.problem, self.deadline = problem, deadline or Deadline()
         _check_size(problem)
         self.base = LayeredLattice(problem)
         axes = problem.given_lattice.postures
@@ -90,7 +99,7 @@ class PostureLattice:
         """(rows, n) postures within the joints' limits whose links keep clear of each other."""
         robot, values = self.problem.robot, self._distinct_values
         inside: Flags = np.all((values >= robot.lower) & (values <= robot.upper), axis=2)
-        query, apart = SelfQuery(robot), inside.copy()
+        query, apart = SelfQuery(robot, self.deadline), inside.copy()
         if not query.empty:
             for i, p in zip(*np.nonzero(inside), strict=True):
                 q = robot.assemble(np.zeros(3), IDENTITY, values[i, p])
@@ -115,13 +124,15 @@ class PostureLattice:
             exists &= np.arange(k) > k // 2
         chosen = np.flatnonzero(exists)
         words = f"the base's reaction to {len(chosen)} joint steps, before the search"
-        parts = -(-len(chosen) // _STEPS_AT_ONCE)
         with notify_after(5.0, words):
-            for part in range(parts):  # from all over the lattice: all need about as many substeps
-                i, p, step = np.unravel_index(chosen[part::parts], exists.shape)
+            for first in range(0, len(chosen), _STEPS_AT_ONCE):
+                self.deadline.check()
+                some = chosen[first : first + _STEPS_AT_ONCE]
+                i, p, step = np.unravel_index(some, exists.shape)
                 begin, on = self.joint_values[i, p], self.successors[p, step]
                 steps = self.joint_values[i + 1, on] - begin
-                turned = Reaction(self.problem.robot, begin, steps).increments
+                reaction = Reaction(self.problem.robot, begin, steps, _TOLERANCE, inside=False)
+                turned = reaction.increments
                 result[i, p, step] = turned
                 if self.alike:
                     result[i, on, k - 1 - step] = rotations.inverse(turned)
@@ -139,6 +150,7 @@ class PostureLattice:
         displaced = self.joint_values - self.base.nominal.joint_values[:, None]
         result = np.empty((1 if self.alike else len(displaced) - 1, *self.successors.shape))
         for i, row in enumerate(result):
+            self.deadline.check()
             steps = displaced[i + 1, np.maximum(self.successors, 0)] - displaced[i, :, None]
             np.sum((steps * weights) ** 2, axis=2, out=row)
         return result
@@ -149,6 +161,7 @@ class PostureLattice:
         robot, values = self.problem.robot, self._distinct_values
         result = np.empty((*values.shape[:2], len(robot.primitives.kinds), 15))
         for row, own in zip(result, values, strict=True):
+            self.deadline.check()
             row[:] = shape_placements(robot, robot.assemble(np.zeros(3), IDENTITY, own)).frames
         return result
 
@@ -159,6 +172,7 @@ class PostureLattice:
         result = np.zeros((*values.shape[:2], 3))
         if self.base.nominal.mode.floats:
             for row, own in zip(result, values, strict=True):
+                self.deadline.check()
                 row[:] = centers_of_mass(robot, own)
         return result
 
@@ -170,13 +184,12 @@ class PostureLattice:
         axes = self.problem.given_lattice.postures
         number = {tuple(index): p for p, index in enumerate(self.indices.tolist())}
         steps = list(product((-1, 0, 1), repeat=len(axes)))
-        return np.array(
-            [
-                [number.get(tuple(a + b for a, b in zip(index, s, strict=True)), -1) for s in steps]
-                for index in self.indices.tolist()
-            ],
-            dtype=np.int64,
-        )
+        rows = []
+        for index in self.indices.tolist():
+            self.deadline.check()
+            beside = (tuple(a + b for a, b in zip(index, s, strict=True)) for s in steps)
+            rows.append([number.get(each, -1) for each in beside])
+        return np.array(rows, dtype=np.int64)
 
 
 def _check_size(problem: Problem) -> None:
@@ -187,7 +200,7 @@ def _check_size(problem: Problem) -> None:
     offsets = math.prod(2 * getattr(settings, name).half_count + 1 for name in settings.axes)
     around = 3 ** len(settings.postures)
     reacts = problem.mode.attitude_reacts and robot.nd > 0
-    points = 8 * math.ceil(_largest_step(problem) / _JOINT_STEP) if reacts else 0
+    substeps = math.ceil(_largest_step(problem) / _JOINT_STEP) if reacts else 0
     moves = bool(np.any(problem.joint_displacement))  # otherwise one layer speaks for all
     advice = "fewer divisions, fewer posture axes, or a smaller half_count or number of levels"
     counts = {"layers": layers, "postures": postures, "steps from a posture": around}
@@ -197,9 +210,9 @@ def _check_size(problem: Problem) -> None:
     fixed = _BYTES_PER_OFFSET_EDGE * layers * offsets**2
     fixed += postures * (_BYTES_PER_PLACED_SHAPE * shapes + 24 * around * (1 + robot.nd))
     at_once = min(_STEPS_AT_ONCE, share * layers * postures * around)
-    fixed += 32 * (3 + robot.nd) * points * at_once
+    fixed += (24 * robot.nd + _BYTES_PER_SUBSTEP * substeps) * at_once
     check_memory("lattice postures", counts, each, advice, fixed)
-    counts = counts | {"points": points} if moves else {**counts, "layers": 1, "points": points}
+    counts |= {"layers": layers if moves else 1, "points": _POINTS * substeps}
     check_work("lattice postures", counts, _SECONDS_PER_POINT * max(robot.nd, 1), advice)
     counts = {"layers": layers if moves else 1, "postures": postures}
     counts["pairs of links"] = len(robot.collision_model.collisionPairs)
