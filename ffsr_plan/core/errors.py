@@ -182,8 +182,7 @@ class AttitudeOutOfReach(PlanningError):
     Attributes:
         wanted: angle from the start attitude to the goal attitude [rad].
         missed: angle from the attitude reached to the goal attitude [rad].
-        best: the `Plan` that misses it so, proven free all the same; None if no path could be
-            proven free.
+        best: the `Plan` that misses it so, proven free all the same; None without one.
         turned: the part of `wanted` that was reached, wanted - missed, at least 0 [rad].
     """
 
@@ -213,17 +212,19 @@ class OutOfTime(PlanningError):
     Attributes:
         time_limit: [s]; infinite where Ctrl-C ended the planning.
         stage: what it ended.
+        advice: what may help.
     """
 
     time_limit: float
     stage: str
+    advice: tuple[str, ...] = ("a longer time_limit", "fewer divisions, offsets or postures")
 
     def message(self) -> str:
         """The limit, what it ended, and what may help."""
-        limit = self.time_limit
-        ended = "Ctrl-C" if math.isinf(limit) else f"the time_limit of {limit:g} s"
-        advice = ("a longer time_limit", "fewer divisions, offsets or postures")
-        return f"no path was proven free before {ended} ended {self.stage}" + _helping(advice)
+        end = (
+            "Ctrl-C" if math.isinf(self.time_limit) else f"the time_limit of {self.time_limit:g} s"
+        )
+        return f"no path was proven free before {end} ended {self.stage}" + _helping(self.advice)
 
 
 class HeldBase(NamedTuple):
@@ -375,10 +376,8 @@ class WorkerDied(PlanningError):
     def message(self) -> str:
         """The worker, its colonies and its exit status."""
         colonies = ", ".join(map(str, self.colonies))
-        return (
-            f"worker {self.worker} (colonies {colonies}) died with exit status {self.status}; "
-            "fewer workers need less memory"
-        )
+        text = f"worker {self.worker} (colonies {colonies}) died with exit status {self.status}"
+        return f"{text}; fewer workers need less memory"
 
 
 @dataclass(eq=False, repr=False)

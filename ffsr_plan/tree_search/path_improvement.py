@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.tree_search.kernels.flight import fly_path
-from ffsr_plan.tree_search.kernels.layered_search import LAYERS, search_around
+from ffsr_plan.tree_search.kernels.layered_search import (
+    GOING_ON,
+    LANES,
+    LAYERS,
+    Layers,
+    lay_out,
+    search_layers,
+)
 from ffsr_plan.tree_search.kernels.path_cost import path_cost
 from ffsr_plan.tree_search.kernels.path_moves import PathMemory, improve, thin
 from ffsr_plan.tree_search.kernels.random_numbers import RandomState
+from ffsr_plan.tree_search.restarts import CHUNK
 from ffsr_plan.tree_search.search_space import SearchSpace
 
 _ROOM = 64  # corners that may be added to a path
 _SPREAD = 0.3  # of the largest moves of a corner
-_CHUNK = 4000  # configurations checked between two looks at the clock
 _STATIONS = 12  # at which two paths are compared
 _AS_ONE = 0.5  # distance up to which two paths go one way round
 
@@ -27,14 +36,22 @@ class ImprovedPath:
         cost: see `path_cost` [m].
     """
 
-    def __init__(self, space: SearchSpace, states: Array, attitudes: Array) -> None:
+    def __init__(
+        self,
+        space: SearchSpace,
+        states: Array,
+        attitudes: Array,
+        expired: Callable[[], bool] = bool,
+    ) -> None:
         """A path that has been flown.
 
         Args:
             space: the configuration space.
             states: (k, D) corners.
             attitudes: (k, 4) of the base there.
+            expired: asked every few milliseconds; whether to end all work early.
         """
+        self._expired = expired
         self._space, self.last = space, len(states) - 1
         room = max(len(states), LAYERS + 2) + _ROOM
         self._memory = PathMemory(
@@ -52,20 +69,22 @@ class ImprovedPath:
 
     def thin(self, checks: int) -> None:
         """Leave out corners; at most so many configurations are checked."""
-        self.last = thin(self._space.arrays, self._memory, self.last, self._until(checks))
+        end, tried = self._until(checks), np.zeros(1, dtype=np.int64)
+        while tried[0] >= 0 and self._goes_on(end):
+            stop = min(self._until(CHUNK), end)
+            self.last = thin(self._space.arrays, self._memory, self.last, tried, stop)
         self._weigh()
 
-    def move(self, random: RandomState, checks: int, expired: object = None) -> None:
+    def move(self, random: RandomState, checks: int) -> None:
         """Try random moves until so many configurations have been checked.
 
         Args:
             random: (1,) state of the random numbers.
             checks: number of configurations.
-            expired: a function that tells whether to stop, or None.
         """
         end = self._until(checks)
-        while self._until(0) < end and not (callable(expired) and expired()):
-            stop = min(self._until(_CHUNK), end)
+        while self._goes_on(end):
+            stop = min(self._until(CHUNK), end)
             self.last = improve(self._space.arrays, self._memory, self.last, random, _SPREAD, stop)
         self._weigh()
 
@@ -92,14 +111,19 @@ class ImprovedPath:
         return bool(np.max(np.linalg.norm(first - second, axis=1)) < _AS_ONE)
 
     def _search(self, random: RandomState, cost: float, checks: int) -> bool:
-        last = search_around(
-            self._space.arrays, self._memory, self.last, random, cost, self._until(checks)
-        )
+        arrays, memory = self._space.arrays, self._memory
+        layers, last, end = _layers(memory.states.shape[2]), GOING_ON, self._until(checks)
+        lay_out(arrays, memory, self.last, random, layers)
+        while last == GOING_ON and self._goes_on(end):
+            last = search_layers(arrays, memory, layers, cost, min(self._until(CHUNK), end))
         if last < 0:
             return False
         self.last = last
         self._weigh()
         return True
+
+    def _goes_on(self, end: int) -> bool:
+        return self._until(0) < end and not self._expired()
 
     def _until(self, checks: int) -> int:
         return int(self._space.arrays.setup[0]["checks"]) + checks
@@ -108,6 +132,18 @@ class ImprovedPath:
         memory = self._memory
         arrays = self._space.arrays
         self.cost = float(path_cost(arrays, memory.states[0], memory.attitudes[0], self.last))
+
+
+def _layers(dimensions: int) -> Layers:
+    shape, rows = (LAYERS + 1, LANES, LANES), LAYERS + 2
+    return Layers(
+        np.zeros((rows, LANES, dimensions)),
+        np.zeros(shape),
+        np.zeros(shape, dtype=np.bool_),
+        np.zeros(rows, dtype=np.int64),
+        np.zeros(rows, dtype=np.int64),
+        np.zeros(1, dtype=np.int64),
+    )
 
 
 def _stations(states: Array) -> Array:

@@ -11,6 +11,7 @@ from ffsr_plan.collision.distances import Nearest
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
+from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.kernels.search_arrays import JOINTS, TURN
 from ffsr_plan.tree_search.search_space import SearchSpace
 
@@ -47,12 +48,16 @@ class PathProof(NamedTuple):
     refusals: list[Refusal]
 
 
-def prove(space: SearchSpace, corners: Array) -> PathProof:
+def prove(space: SearchSpace, corners: Array, deadline: Deadline) -> PathProof:
     """Prove the motion along a path free of collisions, edge by edge.
 
     Args:
         space: the configuration space.
         corners: (k, D) states.
+        deadline: of the proof.
+
+    Raises:
+        OutOfTime: by the deadline.
     """
     problem, states = space.problem, cut(space, corners)
     turns = None
@@ -62,14 +67,14 @@ def prove(space: SearchSpace, corners: Array) -> PathProof:
         problem.robot, problem.mode, problem.start, problem.goal, frozen(states[:, :3].copy()),
         frozen(states[:, JOINTS:].copy()), turns,
     )  # fmt: skip
-    prover, m, still = Prover(motion, problem.scene, problem.tolerance), motion.edges, np.zeros(3)
-    clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
-    refusals = []
-    for edge, links in enumerate(prover.self_verdicts()):
-        ends = float(clearances[edge]), float(clearances[edge + 1])
-        verdict = prover.certify(edge, still, still, ends)
+    m, still = motion.edges, np.zeros((motion.edges + 1, 3))
+    prover = Prover(motion, problem.scene, problem.tolerance, deadline)
+    clearances, refusals = prover.clearances(np.arange(m + 1), still), []
+    ends = np.column_stack([clearances[:-1], clearances[1:]])
+    verdicts = prover.certify_all(np.arange(m), still[1:], still[1:], ends)
+    for edge, (verdict, links) in enumerate(zip(verdicts, prover.self_verdicts(), strict=True)):
         if not verdict.free:
-            refusals.append(Refusal(edge, prover.nearest(edge, still, still, verdict.time)))
+            refusals.append(Refusal(edge, prover.nearest(edge, still[0], still[0], verdict.time)))
         elif not links.free:
             refusals.append(Refusal(edge, prover.nearest_links(edge, links.time)))
     return PathProof(states, motion, prover, frozen(clearances), refusals)

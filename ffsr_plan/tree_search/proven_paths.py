@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.lattice.certificate import Certificate, proven_clearance
 from ffsr_plan.problem.free_objective import (
     edge_lengths,
     free_objective,
@@ -17,6 +18,7 @@ from ffsr_plan.problem.free_objective import (
     stations,
 )
 from ffsr_plan.search.records import Branches, History, Solution
+from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.kernels.trees import Trees
 from ffsr_plan.tree_search.path_improvement import ImprovedPath
 from ffsr_plan.tree_search.path_proof import PathProof, prove
@@ -24,6 +26,7 @@ from ffsr_plan.tree_search.search_space import SearchSpace
 
 _WORTH = 0.005  # share of its cost by which a path has to be better to be proven
 _NEAR = 0.2  # least distance of states within which a larger margin is kept after a refusal
+_RESERVE = 1.3  # for the last proof, as a multiple of the time of the longest
 _MOST_BRANCHES = 10_000  # edges of the trees that are kept for pictures
 
 
@@ -53,14 +56,15 @@ class ProvenPaths:
         refused: number of paths that were refused.
     """
 
-    def __init__(self, space: SearchSpace) -> None:
+    def __init__(self, space: SearchSpace, deadline: Deadline) -> None:
         """No proofs yet.
 
         Args:
             space: the configuration space, in which the search keeps a larger margin near edges
                 that are refused.
+            deadline: of the proofs.
         """
-        self._space = space
+        self._space, self._deadline, self._longest = space, deadline, 0.0
         self.best: ProvenPath | None = None
         self.refused = 0
         self._edges_free = self._edges_refused = self._nodes = self._queries = 0
@@ -72,9 +76,22 @@ class ProvenPaths:
             return True
         return cost < (1.0 - _WORTH) * self.best.objective * self._space.problem.length_unit
 
+    def reserve(self) -> float:
+        """Time to keep for a proof at the end [s]."""
+        return _RESERVE * self._longest
+
     def take(self, path: ImprovedPath) -> bool:
-        """Whether a path is proven free; the best of those that are is kept."""
-        proof = prove(self._space, path.states)
+        """Whether a path is proven free; the best of those that are is kept.
+
+        Ctrl-C waits for the proof of the first path.
+
+        Raises:
+            OutOfTime: by the deadline.
+        """
+        begin = self._deadline.elapsed()
+        with self._deadline.without_stop() if self.best is None else nullcontext():
+            proof = prove(self._space, path.states, self._deadline)
+        self._longest = max(self._longest, self._deadline.elapsed() - begin)
         refused = len(proof.refusals)
         self._nodes += len(proof.clearances)
         self._queries += proof.prover.queries
@@ -116,7 +133,8 @@ class ProvenPaths:
         assert best is not None
         still = np.zeros((best.motion.edges + 1, 3))
         before = best.proof.prover.queries
-        least = best.proof.prover.least_clearance(still, best.proof.clearances)
+        self._deadline.close()
+        least, cut = proven_clearance(best.proof.prover, still, best.proof.clearances)
         queries = self._queries + best.proof.prover.queries - before
         nodes = self._nodes if len(problem.scene) else 0
         if not self._rows or self._rows[-1][0] != best.objective:
@@ -137,7 +155,7 @@ class ProvenPaths:
                 self._edges_free, self._edges_refused, nodes, max(queries - nodes, 0), least,
                 problem.robot.unchecked_links,
             ),
-            interrupted=interrupted,
+            interrupted=interrupted or cut,
         )  # fmt: skip
 
     def _bar(self, proof: PathProof) -> None:

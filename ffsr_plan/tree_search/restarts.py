@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,9 @@ from ffsr_plan.tree_search.kernels.random_numbers import random_state
 from ffsr_plan.tree_search.kernels.trees import FULL, Trees, grow, plant
 from ffsr_plan.tree_search.search_space import SearchSpace
 
-_CHUNK = 4000  # configurations checked between two looks at the clock
+CHUNK = 500
+"""Configurations checked between two looks at the clock: a few milliseconds."""
+_MOST_PAIRS = 200_000  # of nodes whose distances are computed for an error
 _FIRST_NODES = 20_000  # of each tree of a first try; longer ones have more
 _CHECKS_A_NODE = 4  # at least
 
@@ -79,24 +82,24 @@ class Restarts:
         self.trees: Trees = self._planted()
         self.meetings = Meetings()
 
-    def find(self, checks: int, expired: object = None) -> FoundPath | None:
+    def find(self, checks: int, expired: Callable[[], bool] = bool) -> FoundPath | None:
         """Search until a path is found or the work is done.
 
         Args:
             checks: configurations that may be checked.
-            expired: a function that tells whether to stop, or None.
+            expired: asked every few milliseconds; whether to stop.
 
         Returns:
             A path, or None.
         """
         setup, space = self._space.arrays.setup[0], self._space
         end = int(setup["checks"]) + checks
-        while int(setup["checks"]) < end and not (callable(expired) and expired()):
+        while int(setup["checks"]) < end and not expired():
             if self._left <= 0:
                 self._begin()
             reach = self._reaches[(self.meetings.tries - 1) % len(self._reaches)]
             now = int(setup["checks"])
-            stop = min(now + min(self._left, _CHUNK), end)
+            stop = min(now + min(self._left, CHUNK), end)
             found = grow(space.arrays, self.trees, self._random, abs(reach), reach > 0.0, stop)
             self._left -= int(setup["checks"]) - now
             if found == FULL:
@@ -115,10 +118,11 @@ class Restarts:
         """
         first, second = (self.trees.states[side, : self.trees.counts[side]] for side in (0, 1))
         weights, best = self._space.arrays.weights, (np.inf, 0, 0)
-        for j, goal in enumerate(second[:: max(1, len(second) // 500)]):
+        stride = max(1, len(first) * len(second) // _MOST_PAIRS)
+        for j, goal in enumerate(second[::stride]):
             apart = np.sum(((first - goal) * weights[0]) ** 2, axis=1)
             i = int(np.argmin(apart))
-            best = min(best, (float(apart[i]), i, j * max(1, len(second) // 500)))
+            best = min(best, (float(apart[i]), i, j * stride))
         _, i, j = best
         return first[i], self.trees.attitudes[0, i], second[j]
 

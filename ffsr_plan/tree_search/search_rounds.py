@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import SearchMonitor, Solution, TreeCycle
+from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.end_checks import check_ends
 from ffsr_plan.tree_search.kernels.flight import fly
 from ffsr_plan.tree_search.kernels.random_numbers import random_state
@@ -54,13 +56,14 @@ class SearchRounds:
         """
         check_ends(problem)
         self.space = SearchSpace(problem, settings.margin)
-        self._monitor, self._ways = monitor, settings.ways
+        self._deadline, self._ways = monitor.deadline or Deadline(), settings.ways
         searching, self._random = rng.spawn(1)[0], random_state(rng)
         self._restarts = Restarts(
             self.space, searching, settings.reaches, settings.first_checks, settings.roots
         )
         self._paths: list[ImprovedPath] = []
-        self.proven = ProvenPaths(self.space)
+        self.proven = ProvenPaths(self.space, self._deadline)
+        self._monitor = monitor._replace(reserve=self.proven.reserve)
 
     def run(self, checks: int, first: bool) -> bool:
         """Search until so many configurations have been checked.
@@ -71,6 +74,9 @@ class SearchRounds:
 
         Returns:
             Whether the monitor ended it before.
+
+        Raises:
+            OutOfTime: by the deadline, in the proof of the first path.
         """
         if self._try_straight() or (first and self.proven.best is not None):
             return False
@@ -109,7 +115,7 @@ class SearchRounds:
         arrival[0] = space.problem.start[3:7]
         for goal in space.goals:
             if fly(space.arrays, space.start, arrival[0], goal, arrival[1], True) == 1.0:
-                path = ImprovedPath(space, np.stack([space.start, goal]), arrival)
+                path = self._path(np.stack([space.start, goal]), arrival)
                 self._paths.append(path)
                 return self._prove(path) and space.problem.delta == 0.0
         return False
@@ -130,19 +136,22 @@ class SearchRounds:
             found = self._restarts.find(limit - self._checks(), self._monitor.expired)
             if found is None:
                 continue
-            path = ImprovedPath(self.space, *found)
-            path.move(self._random, _AT_FIRST, self._monitor.expired)
+            path = self._path(*found)
+            path.move(self._random, _AT_FIRST)
             path.thin(_THINNING)
             if self.proven.best is None:
                 if not self._prove(path):
                     continue
                 if first:
                     break
-            path.move(self._random, _FOR_NEW, self._monitor.expired)
+            path.move(self._random, _FOR_NEW)
             path.thin(_THINNING)
             least = min(least, path.cost)
             self._keep(path)
         return least
+
+    def _path(self, states: Array, attitudes: Array) -> ImprovedPath:
+        return ImprovedPath(self.space, states, attitudes, self._monitor.expired)
 
     def _keep(self, path: ImprovedPath) -> None:
         """Keep a path if it is among the best; of those that go one way round, the better one."""
@@ -171,15 +180,21 @@ class SearchRounds:
         """Improve one path until so many configurations have been checked."""
         stop = self._monitor.expired
         while (left := until - self._checks()) > 0 and not stop():
-            path.move(self._random, max(left // 3, 1), stop)
+            path.move(self._random, max(left // 3, 1))
             path.search_around(self._random, min(_AROUND, max(left // 3, 1)))
             path.thin(min(_THINNING, max(left // 3, 1)))
 
     def _prove(self, path: ImprovedPath) -> bool:
         """Whether a path is proven free, after repairs where the proof of some edges fails."""
         for _ in range(_ATTEMPTS):
-            if self.proven.take(path):
-                return True
+            try:
+                if self.proven.take(path):
+                    return True
+            except OutOfTime as error:
+                if self.proven.best is None:
+                    advice = ("a longer time_limit",)
+                    raise OutOfTime(error.time_limit, error.stage, advice) from None
+                return False
             if not path.repair(self._random, _AROUND):
                 break
         return False

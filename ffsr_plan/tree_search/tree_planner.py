@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import ClassVar
 
 import numpy as np
@@ -11,6 +10,7 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.settings import settings
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import SearchRequest, Solution
+from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.tree_settings import MOST_CHECKS, TreeSettings
 
 _DEFAULT_CHECKS = 1_200_000  # about five seconds
@@ -56,6 +56,7 @@ class TreePlanner(TreeSettings):
             StartInCollision: with all links and obstacles that touch.
             GoalInCollision: the same for the goal, where its attitude does not matter or is held.
             PathNotFound: with what was tried, and what is in the way.
+            OutOfTime: by the deadline, in the proof of the first path.
         """
         from ffsr_plan.tree_search.search_rounds import SearchRounds
 
@@ -64,9 +65,11 @@ class TreePlanner(TreeSettings):
             raise InvalidInput("refine", True, "False or None without a lattice")
         if request.colonies > 1:
             raise InvalidInput("colonies", request.colonies, "1 without a lattice")
-        begin = time.perf_counter()
+        deadline = request.deadline or Deadline()
+        deadline.stage = "the proof of the first path"
+        request = request._replace(deadline=deadline)
         rounds = SearchRounds(problem, self, rng, request.monitor())
-        limited = request.deadline is not None and request.deadline.is_limited
+        limited = deadline.is_limited
         checks = self.checks or (MOST_CHECKS if limited else _DEFAULT_CHECKS)
         interrupted = rounds.run(checks, request.first)
-        return rounds.solution(interrupted, time.perf_counter() - begin)
+        return rounds.solution(interrupted, deadline.elapsed())

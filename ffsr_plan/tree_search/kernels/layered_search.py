@@ -9,6 +9,7 @@ shortest path is clear or no better than the one that is known.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,8 @@ from ffsr_plan.tree_search.kernels.random_numbers import RandomState, normal, un
 from ffsr_plan.tree_search.kernels.search_arrays import SearchArrays
 
 LAYERS, LANES = 16, 24
+NONE, GOING_ON = -1, -2
+"""What `search_layers` returns without a path: there is none, or it may go on."""
 _LEAST, _LARGEST = 0.03, 0.8  # displacement of a lane
 _SCATTER = 0.3  # share of it that is drawn for each state
 _LEAST_WEIGHT = 0.2
@@ -35,39 +38,73 @@ _NEAREST = 1e-9  # [m] that a clearance counts at least
 _ATTEMPTS = 400  # paths that are flown
 
 
+class Layers(NamedTuple):
+    """Layers around a path, and what is known of the edges between them.
+
+    Attributes:
+        states: (LAYERS + 2, LANES, D), lane 0 on the path.
+        steps: (LAYERS + 1, LANES, LANES) cost of each edge [m].
+        barred: of the same shape: edges that are not clear.
+        lanes: (LAYERS + 2,) the shortest path.
+        flown: (LAYERS + 2,) lanes of the path as far as it has been flown, -1 behind.
+        attempts: (1,) paths flown so far.
+    """
+
+    states: Array
+    steps: Array
+    barred: Flags
+    lanes: IntArray
+    flown: IntArray
+    attempts: IntArray
+
+
 @kernel
-def search_around(
-    space: SearchArrays,
-    memory: PathMemory,
-    last: int,
-    random: RandomState,
-    cost: float,
-    checks: int,
-) -> int:
-    """Replace the path by a better one through states around it, if one is found.
+def lay_out(
+    space: SearchArrays, memory: PathMemory, last: int, random: RandomState, layers: Layers
+) -> None:
+    """Lay layers of random states around a path.
 
     Args:
         space: robot, scene and settings.
-        memory: the path, which may be changed; with room for LAYERS + 2 corners.
+        memory: the path, with room for LAYERS + 2 corners of a changed one.
         last: its last corner.
         random: (1,) state of the random numbers.
+        layers: filled in.
+    """
+    fill_layers(space, memory, last, random, layers.states)
+    layers.steps[:] = edge_costs(space, memory, last, layers.states)
+    layers.barred[:] = False
+    layers.flown[:] = -1
+    layers.attempts[0] = 0
+    memory.states[1, 0] = layers.states[0, 0]
+    memory.attitudes[1, 0] = memory.attitudes[0, 0]
+
+
+@kernel
+def search_layers(
+    space: SearchArrays, memory: PathMemory, layers: Layers, cost: float, checks: int
+) -> int:
+    """Replace the path by a better one through the layers around it, if one is found.
+
+    Args:
+        space: robot, scene and settings.
+        memory: the path, which may be changed; nothing else has been done with it since the layers
+            were laid out.
+        layers: the layers.
         cost: cost that the new path has to fall below [m]; infinite where the path is not clear.
         checks: value of `setup.checks` at which to stop.
 
     Returns:
-        The last corner of the path; -1 if no better one was found.
+        The last corner of the new path, or NONE or GOING_ON.
     """
-    states = np.empty((LAYERS + 2, LANES, memory.states.shape[2]))
-    fill_layers(space, memory, last, random, states)
-    steps = edge_costs(space, memory, last, states)
-    barred = np.zeros(steps.shape, np.bool_)
-    lanes, flown = np.zeros(LAYERS + 2, np.int64), np.full(LAYERS + 2, -1)
+    states, steps, barred, lanes, flown, attempts = layers
     corners, attitudes = memory.states[1], memory.attitudes[1]
-    corners[0] = states[0, 0]
-    attitudes[0] = memory.attitudes[0, 0]
-    for _ in range(_ATTEMPTS):
-        if shortest(steps, barred, lanes) >= cost - _GAIN or space.setup[0].checks >= checks:
-            return -1
+    while attempts[0] < _ATTEMPTS:
+        if space.setup[0].checks >= checks:
+            return GOING_ON
+        if shortest(steps, barred, lanes) >= cost - _GAIN:
+            return NONE
+        attempts[0] += 1
         layer = 0
         while layer <= LAYERS and flown[layer + 1] == lanes[layer + 1]:
             layer += 1
@@ -85,9 +122,9 @@ def search_around(
             layer += 1
         if layer > LAYERS:
             if path_cost(space, corners, attitudes, LAYERS + 1) >= cost - _GAIN:
-                return -1
+                return NONE
             return take_over(space, memory, LAYERS + 1)
-    return -1
+    return NONE
 
 
 @kernel

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.tree_search.kernels.flight import distance, fly_path, path_length
 from ffsr_plan.tree_search.kernels.path_cost import path_cost
@@ -260,7 +260,7 @@ def split_longest(space: SearchArrays, memory: PathMemory, last: int) -> int:
 
 
 @kernel
-def thin(space: SearchArrays, memory: PathMemory, last: int, checks: int) -> int:
+def thin(space: SearchArrays, memory: PathMemory, last: int, tried: IntArray, checks: int) -> int:
     """Leave out corners, those nearest to the line between their neighbours first.
 
     The path stays clear and costs no more.
@@ -269,6 +269,8 @@ def thin(space: SearchArrays, memory: PathMemory, last: int, checks: int) -> int
         space: robot, scene and settings.
         memory: the path, flown, which is changed.
         last: its last corner.
+        tried: (1,) corners that cannot be left out, counted in their order; 0 for a path that has
+            changed, changed, and -1 when all have been tried.
         checks: value of `setup.checks` at which to stop.
 
     Returns:
@@ -286,15 +288,18 @@ def thin(space: SearchArrays, memory: PathMemory, last: int, checks: int) -> int
                 - distance(space.weights, 0, states[k - 1], states[k + 1])
             )
         order = np.argsort(detours[1:last])
-        for row in range(len(order)):
+        for row in range(tried[0], len(order)):
             if space.setup[0].checks >= checks:
+                tried[0] = row
                 return last
             change = without_corner(memory, last, 1 + order[row])
             new = try_change(space, memory, change, last, cost)
             if new < cost:
                 last = take_over(space, memory, change.last)
+                tried[0] = 0
                 count += 1
                 break
         if count == 0:
             break
+    tried[0] = -1
     return last
