@@ -7,7 +7,8 @@ from itertools import product
 import numpy as np
 
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, Records, records
+from ffsr_plan.dynamics.kernels.bodies import LINK_STATE, ROBOT_STATE, base_at_rest
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
@@ -17,11 +18,9 @@ from ffsr_plan.tree_search.kernels.flight import fly
 from ffsr_plan.tree_search.kernels.path_cost import clearance_at
 from ffsr_plan.tree_search.kernels.search_arrays import (
     JOINTS,
-    LINK,
     SETUP,
     SHAPE,
     TURN,
-    Records,
     SearchArrays,
 )
 
@@ -63,7 +62,10 @@ class SearchSpace:
         self.start[JOINTS:] = robot.joint_values(problem.start)
         self.goals = self._goals()
         self.arrays = SearchArrays(
-            links=_links(robot),
+            bodies=robot.bodies,
+            links=base_at_rest(records(LINK_STATE, len(robot.bodies))),
+            robot=records(ROBOT_STATE, 1),
+            joints=np.zeros((2, robot.nd)),
             shapes=_shapes(robot),
             pairs=np.array(
                 [(p.first, p.second) for p in robot.collision_model.collisionPairs], dtype=np.int64
@@ -145,7 +147,7 @@ class SearchSpace:
 
     def _setup(self, margin: float) -> Records:
         problem = self.problem
-        setup = np.zeros(1, dtype=SETUP)
+        setup = records(SETUP, 1)
         setup["reacts"], setup["floats"] = problem.mode.attitude_reacts, problem.mode.floats
         angle = float(np.linalg.norm(self.turn))
         setup["axis"] = self.turn / angle if angle > 0.0 else 0.0
@@ -159,32 +161,13 @@ class SearchSpace:
         return setup
 
 
-def _links(robot: SpaceRobot) -> Records:
-    """(n,) of `LINK`, the base at rest at the origin."""
-    tree = robot.tree
-    links = np.zeros(len(tree.parents), dtype=LINK)
-    links["parent"] = tree.parents
-    links["fixed"], links["sine"], links["versine"] = tree._fixed, tree._sine, tree._versine
-    links["offset"], links["slide"] = tree._offsets, tree._slide
-    links["turning"], links["sliding"] = tree._revolute_axes, tree._prismatic_axes
-    bodies = list(robot.model.inertias)[1:]
-    links["mass"] = [body.mass for body in bodies]
-    links["lever"] = [body.lever for body in bodies]
-    links["inertia"] = [body.inertia for body in bodies]
-    links["rotation"][0] = np.eye(3)
-    return links
-
-
 def _shapes(robot: SpaceRobot) -> Records:
     """(g,) of `SHAPE`."""
-    given = robot.primitives
-    shapes = np.zeros(len(given.kinds), dtype=SHAPE)
-    shapes["link"], shapes["kind"] = given.links, given.kinds
-    shapes["rotation"], shapes["position"] = given.rotations, given.positions
-    shapes["frame"][:, 12:] = given.sizes
-    box = given.kinds == BOX
-    shapes["core"][box] = given.sizes[box]
-    shapes["core"][~box, 2] = given.sizes[~box, 1]
-    shapes["skin"][~box] = given.sizes[~box, 0]
-    shapes["reach"] = np.linalg.norm(shapes["core"], axis=1)
+    given, box = robot.primitives, robot.primitives.kinds == BOX
+    shapes = records(SHAPE, len(given.kinds))
+    shapes.link, shapes.kind = given.links, given.kinds
+    shapes.rotation, shapes.position = given.rotations, given.positions
+    shapes.frame[:, 12:] = given.sizes
+    shapes.skin[~box] = given.sizes[~box, 0]
+    shapes.reach = np.where(box, np.linalg.norm(given.sizes, axis=1), given.sizes[:, 1])
     return shapes

@@ -182,9 +182,10 @@ def base_rate(robot: Records) -> float:
     d, e, f = xz * yz - xy * zz, xy * yz - xz * yy, xy * xz - xx * yz
     determinant = xx * a + xy * d + xz * e
     x, y, z = momentum[0], momentum[1], momentum[2]
-    rate[0] = -(a * x + d * y + e * z) / determinant
-    rate[1] = -(d * x + b * y + f * z) / determinant
-    rate[2] = -(e * x + f * y + c * z) / determinant
+    scale = -1.0 / determinant
+    rate[0] = scale * (a * x + d * y + e * z)
+    rate[1] = scale * (d * x + b * y + f * z)
+    rate[2] = scale * (e * x + f * y + c * z)
     norm = math.sqrt(a * a + b * b + c * c + 2.0 * (d * d + e * e + f * f))
     return float(determinant / norm)
 

@@ -25,6 +25,7 @@ from ffsr_plan.dynamics.kernels.bodies import (
     rate_rounding,
     weigh_links,
 )
+from ffsr_plan.dynamics.kernels.quaternions import inverse, multiply, normalise
 from ffsr_plan.dynamics.kernels.rate_bound import (
     EXCURSION,
     excursions_of_links,
@@ -34,9 +35,6 @@ from ffsr_plan.dynamics.kernels.rotation_series import (
     POINTS,
     TERMS,
     end_to_end,
-    inverse,
-    multiply,
-    normalise,
     rotation_series,
 )
 

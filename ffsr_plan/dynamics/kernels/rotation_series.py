@@ -1,4 +1,4 @@
-"""Compiled rotations as power series of quaternions, and products of quaternions (xyzw)."""
+"""Compiled rotations as power series of quaternions (xyzw)."""
 
 from __future__ import annotations
 
@@ -9,20 +9,12 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray, Records
 from ffsr_plan.core.kernels.compilation import kernel
+from ffsr_plan.dynamics.kernels.quaternions import add_product, inverse, multiply, normalise
 
 POINTS = 13
 """Values of omega over a substep; odd, so that one is in the middle."""
 TERMS = 2 * POINTS + 4
 """Terms of the power series of a rotation."""
-
-
-@kernel
-def _add_product(result: Array, p: Array, x: float, y: float, z: float) -> None:
-    """Add the quaternion product p (x, y, z, 0), (4,), to `result`."""
-    result[0] += p[3] * x + p[1] * z - p[2] * y
-    result[1] += p[3] * y - p[0] * z + p[2] * x
-    result[2] += p[3] * z + p[0] * y - p[1] * x
-    result[3] -= p[0] * x + p[1] * y + p[2] * z
 
 
 @kernel
@@ -50,7 +42,7 @@ def rotation_series(powers: Array, terms: Array, sizes: Array) -> float:
             term[a] = 0.0
         for j in range(min(k + 1, POINTS)):
             x, y, z = powers[j, 0], powers[j, 1], powers[j, 2]
-            _add_product(term, terms[k - j], x, y, z)
+            add_product(term, terms[k - j], x, y, z)
             sizes[k + 1] += sizes[k - j] * math.sqrt(x * x + y * y + z * z)
         for a in range(4):
             term[a] /= k + 1
@@ -76,28 +68,6 @@ def end_to_end(terms: Array, turn: Array, back: Array, ahead: Array) -> None:
     inverse(back)
     multiply(turn, back, ahead)
     inverse(back)
-
-
-@kernel
-def inverse(q: Array) -> None:
-    """Invert a rotation (4,)."""
-    q[0], q[1], q[2] = -q[0], -q[1], -q[2]
-
-
-@kernel
-def normalise(q: Array) -> None:
-    """Divide a quaternion (4,) by its norm."""
-    norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
-    for a in range(4):
-        q[a] /= norm
-
-
-@kernel
-def multiply(result: Array, p: Array, q: Array) -> None:
-    """The quaternion product p q, all (4,); `result` is neither of them."""
-    for a in range(4):
-        result[a] = q[3] * p[a]
-    _add_product(result, p, q[0], q[1], q[2])
 
 
 SUBSTEP = np.dtype(

@@ -16,13 +16,13 @@ from ffsr_plan.collision.nearest_sphere_kernels import (
 from ffsr_plan.core.arrays import Array, Flags, IntArray, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import move_links, norm_of, weigh_links
-from ffsr_plan.dynamics.kernels.rotation_series import Partial, multiply, normalise, rotation_at
+from ffsr_plan.dynamics.kernels.quaternions import fill_matrix, multiply, normalise, turn_by
+from ffsr_plan.dynamics.kernels.rotation_series import Partial, rotation_at
 from ffsr_plan.proof.kernels.travel import (
     TRAVEL,
     BaseMotion,
     Scratch,
     bound_travel,
-    fill_matrix,
     scratch_for,
 )
 from ffsr_plan.scene.sphere_tree import SphereTree
@@ -140,14 +140,11 @@ def attitude_at(course: Course, layer: int, time: float, quats: Array) -> None:
         at = time if each else (layer + time) / edges
         rotation_at(course.partial, segment, at, quats[2], turned)
         multiply(attitude, starts[segment], turned)
+        normalise(attitude)
     else:
-        turn, part = course.base.turns[layer], 0.5 * time
-        x, y, z = part * turn[0], part * turn[1], part * turn[2]
-        half = math.sqrt(x * x + y * y + z * z)
-        sine = math.sin(half) / half if half > 1e-9 else 1.0
-        turned[0], turned[1], turned[2], turned[3] = sine * x, sine * y, sine * z, math.cos(half)
-        multiply(attitude, starts[layer], turned)
-    normalise(attitude)
+        turn = course.base.turns[layer]
+        attitude[:] = starts[layer]
+        turn_by(attitude, time * turn[0], time * turn[1], time * turn[2], turned)
 
 
 @kernel

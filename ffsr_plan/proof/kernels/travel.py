@@ -35,6 +35,7 @@ from ffsr_plan.dynamics.kernels.bodies import (
     turn_vector,
     weigh_links,
 )
+from ffsr_plan.dynamics.kernels.quaternions import fill_matrix
 from ffsr_plan.proof.kernels.link_bounds import LINK_BOUND, Point, bound_links, bound_point
 
 HULL_POINT = np.dtype([("link", np.int64), ("place", np.float64, 3)])
@@ -282,16 +283,6 @@ def _move_center(bodies: Records, links: Records, bounds: Records, mean: Array) 
             mean[a] += share * at
             mean[3 + a] += share * link.flow[a]
             mean[6 + a] += share * center[a]
-
-
-@kernel
-def fill_matrix(quat: Array, rotation: Array) -> None:
-    """The rotation matrix (3, 3) of a unit quaternion (4,)."""
-    x, y, z, w = quat[0], quat[1], quat[2], quat[3]
-    a, b, c = rotation[0], rotation[1], rotation[2]
-    a[0], a[1], a[2] = 1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)
-    b[0], b[1], b[2] = 2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)
-    c[0], c[1], c[2] = 2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)
 
 
 @kernel

@@ -10,10 +10,11 @@ import math
 import numpy as np
 
 from ffsr_plan.collision.nearest_sphere_kernels import nearest_sphere
+from ffsr_plan.collision.shape_gap_kernels import least_gap
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
+from ffsr_plan.dynamics.kernels.bodies import norm_of
 from ffsr_plan.tree_search.kernels.search_arrays import Record, SearchArrays
-from ffsr_plan.tree_search.kernels.shape_gap import core_gap
 
 _BEYOND = 1e-12  # [m] beyond the farthest distance that matters
 
@@ -40,13 +41,7 @@ def place_shapes(space: SearchArrays) -> None:
         shape.velocity[0] = link.linear[0] + spin[1] * z - spin[2] * y
         shape.velocity[1] = link.linear[1] + spin[2] * x - spin[0] * z
         shape.velocity[2] = link.linear[2] + spin[0] * y - spin[1] * x
-        shape.speed = norm(shape.velocity) + shape.reach * norm(spin)
-
-
-@kernel
-def norm(vector: Array) -> float:
-    """Length of a vector (3,)."""
-    return math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
+        shape.speed = norm_of(shape.velocity) + shape.reach * norm_of(spin)
 
 
 @kernel
@@ -63,11 +58,11 @@ def put_in_world(space: SearchArrays, g: int, position: Array, turn: Array) -> N
         space: its shapes have been placed.
         g: the shape.
         position: (3,) base origin [m].
-        turn: (9,) rotation of the base, row by row.
+        turn: (3, 3) rotation of the base.
     """
     frame, own = space.frame, space.shapes[g].frame
     for a in range(3):
-        x, y, z = turn[3 * a], turn[3 * a + 1], turn[3 * a + 2]
+        x, y, z = turn[a, 0], turn[a, 1], turn[a, 2]
         for b in range(3):
             frame[3 * a + b] = x * own[b] + y * own[3 + b] + z * own[6 + b]
         frame[9 + a] = position[a] + x * own[9] + y * own[10] + z * own[11]
@@ -101,7 +96,7 @@ def obstacle_step(
     Args:
         space: its shapes have been placed.
         position: (3,) base origin [m].
-        turn: (9,) rotation of the base, row by row.
+        turn: (3, 3) rotation of the base.
         base: (3,) velocity of the base origin, base axes [m].
         margin: clearance to keep [m].
         step: wanted, in the unit of time of the edge.
@@ -110,7 +105,7 @@ def obstacle_step(
     for g in range(len(space.shapes)):
         shape = space.shapes[g]
         put_in_world(space, g, position, turn)
-        speed = world_speed(shape, space.links[shape.link], base, setup.rate)
+        speed = world_speed(shape, space.links[shape.link], base, space.robot[0].rate)
         far = margin + speed * step + _BEYOND
         near, row = nearest_sphere(
             space.tree, shape.kind, space.frame, space.still, far, -1, space.stack, space.bounds
@@ -146,7 +141,7 @@ def link_step(space: SearchArrays, margin: float, step: float) -> float:
         wide = far + skins + one.reach + two.reach
         if x * x + y * y + z * z >= wide * wide:
             continue
-        near = core_gap(one.frame, two.frame, one.core, two.core, skins, far)
+        near = least_gap(one.kind, one.frame, two.kind, two.frame, far)
         if near <= margin:
             return -1.0
         if near < far and speed > 0.0:
@@ -160,6 +155,5 @@ def pair_gaps(space: SearchArrays) -> Array:
     gaps = np.empty(len(space.pairs))
     for k in range(len(space.pairs)):
         one, two = space.shapes[space.pairs[k, 0]], space.shapes[space.pairs[k, 1]]
-        skins = one.skin + two.skin
-        gaps[k] = core_gap(one.frame, two.frame, one.core, two.core, skins, math.inf)
+        gaps[k] = least_gap(one.kind, one.frame, two.kind, two.frame, math.inf)
     return gaps

@@ -15,15 +15,10 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.tree_search.kernels.attitude import matrix_of, turn_by
+from ffsr_plan.dynamics.kernels.bodies import base_rate, move_links, total_mass, weigh_links
+from ffsr_plan.dynamics.kernels.quaternions import fill_matrix, turn_by
 from ffsr_plan.tree_search.kernels.clear_step import link_step, obstacle_step, place_shapes
-from ffsr_plan.tree_search.kernels.link_motion import (
-    find_center,
-    move_links,
-    place_links,
-    react,
-)
-from ffsr_plan.tree_search.kernels.search_arrays import TURN, SearchArrays
+from ffsr_plan.tree_search.kernels.search_arrays import JOINTS, TURN, SearchArrays
 
 _END = 1e-12  # of an edge's time, within which its end is reached
 
@@ -45,10 +40,8 @@ def fly(
     Returns:
         The share of the way that was flown, 1 for all of it.
     """
-    setup, memory = space.setup[0], np.empty(22)
-    quat, position, turn, base, rate = (
-        memory[:4], memory[4:7], memory[7:16], memory[16:19], memory[19:22]
-    )  # fmt: skip
+    setup, memory = space.setup[0], np.empty(17)
+    quat, position, base, spare = memory[:4], memory[4:7], memory[7:10], memory[10:]
     quat[:] = attitude
     arrival[:] = attitude
     farthest = joint_travel(begin, end)
@@ -61,11 +54,11 @@ def fly(
         step = left
         if check:
             setup.checks += 1
-            locate(space, begin, end, time, quat, position, turn, base)
+            locate(space, begin, end, time, quat, position, base)
             place_shapes(space)
             step = link_step(space, setup.self_margin + extra, max(left, _END))
             if step > 0.0 and len(space.tree.spheres) > 0:
-                step = obstacle_step(space, position, turn, base, margin, step)
+                step = obstacle_step(space, position, setup.turn, base, margin, step)
             if step < 0.0:
                 return flown
         flown = time
@@ -76,7 +69,7 @@ def fly(
             step = min(step, setup.largest_turn / farthest)
         if 0.5 * left < step < left:
             step = 0.5 * left
-        advance(space, begin, end, time, step, quat, rate)
+        advance(space, begin, end, time, step, quat, spare)
         time = 1.0 if step >= left else time + step
 
 
@@ -91,16 +84,18 @@ def joint_travel(begin: Array, end: Array) -> float:
 
 @kernel
 def observe(space: SearchArrays, begin: Array, end: Array, time: float) -> None:
-    """Links, centre of mass and angular velocity of the base at a time on an edge."""
-    setup = space.setup[0]
-    place_links(space.links, begin, end, time)
-    move_links(space.links)
-    if setup.reacts:
-        find_center(space.links, space.setup)
-        react(space.links, space.setup)
+    """Links and angular velocity of the base at a time on an edge."""
+    (values, rates), rate = space.joints, space.robot[0].rate
+    for j in range(len(values)):
+        rates[j] = end[JOINTS + j] - begin[JOINTS + j]
+        values[j] = begin[JOINTS + j] + time * rates[j]
+    move_links(space.bodies, values, rates, space.links)
+    if space.setup[0].reacts:
+        weigh_links(space.bodies, space.links, space.robot)
+        base_rate(space.robot)
     else:
         for a in range(3):
-            setup.rate[a] = setup.axis[a] * (end[TURN] - begin[TURN])
+            rate[a] = space.setup[0].axis[a] * (end[TURN] - begin[TURN])
 
 
 @kernel
@@ -111,7 +106,7 @@ def advance(
     time: float,
     step: float,
     quat: Array,
-    rate: Array,
+    spare: Array,
 ) -> None:
     """Move on by a step, and turn the attitude `quat` (4,) by what the base does meanwhile.
 
@@ -122,60 +117,80 @@ def advance(
         time: begin of the step.
         step: its length.
         quat: (4,) changed.
-        rate: (3,) memory.
+        spare: (7,) memory.
     """
-    setup = space.setup[0]
-    rate[:] = setup.rate
+    now, rate, spare = space.robot[0].rate, spare[:3], spare[3:]
+    rate[:] = now
     last = 1.0 if time + step > 1.0 - _END else time + step
-    if not setup.reacts:
-        turn_by(quat, step * rate[0], step * rate[1], step * rate[2])
+    if not space.setup[0].reacts:
+        turn_by(quat, step * rate[0], step * rate[1], step * rate[2], spare)
         observe(space, begin, end, last)
         return
     observe(space, begin, end, 0.5 * (time + last))
-    x, y, z = 4.0 * setup.rate[0], 4.0 * setup.rate[1], 4.0 * setup.rate[2]
+    x, y, z = 4.0 * now[0], 4.0 * now[1], 4.0 * now[2]
     observe(space, begin, end, last)
-    now, one, two = setup.rate, step / 6.0, step * step / 12.0
+    one, two = step / 6.0, step * step / 12.0
     turn_by(
         quat,
         one * (rate[0] + x + now[0]) + two * (rate[1] * now[2] - rate[2] * now[1]),
         one * (rate[1] + y + now[1]) + two * (rate[2] * now[0] - rate[0] * now[2]),
         one * (rate[2] + z + now[2]) + two * (rate[0] * now[1] - rate[1] * now[0]),
+        spare,
     )
 
 
 @kernel
 def locate(
     space: SearchArrays, begin: Array, end: Array, time: float, quat: Array,
-    position: Array, turn: Array, base: Array,
+    position: Array, base: Array,
 ) -> None:  # fmt: skip
-    """Place and velocity of the base origin.
+    """Rotation of the base, place and velocity of its origin.
 
     Args:
-        space: as observed at `time`.
+        space: as observed at `time`; the rotation is filled in.
         begin: (D,) state.
         end: (D,) state.
         time: on the edge.
         quat: (4,) attitude of the base.
         position: (3,) filled in, world [m].
-        turn: (9,) filled in, rotation of the base.
         base: (3,) filled in, velocity of the origin in base axes [m].
     """
-    setup = space.setup[0]
-    matrix_of(quat, turn)
+    setup, turn = space.setup[0], space.setup[0].turn
+    fill_matrix(quat, turn)
     if setup.floats:
-        c, w = setup.center, setup.rate
+        find_center(space, setup.center, setup.drift)
+        c, w = setup.center, space.robot[0].rate
         base[0] = -(w[1] * c[2] - w[2] * c[1]) - setup.drift[0]
         base[1] = -(w[2] * c[0] - w[0] * c[2]) - setup.drift[1]
         base[2] = -(w[0] * c[1] - w[1] * c[0]) - setup.drift[2]
         for a in range(3):
             position[a] = setup.anchor[a] - (
-                turn[3 * a] * c[0] + turn[3 * a + 1] * c[1] + turn[3 * a + 2] * c[2]
+                turn[a, 0] * c[0] + turn[a, 1] * c[1] + turn[a, 2] * c[2]
             )
         return
     x, y, z = end[0] - begin[0], end[1] - begin[1], end[2] - begin[2]
     for a in range(3):
         position[a] = begin[a] + time * (end[a] - begin[a])
-        base[a] = turn[a] * x + turn[3 + a] * y + turn[6 + a] * z
+        base[a] = turn[0, a] * x + turn[1, a] * y + turn[2, a] * z
+
+
+@kernel
+def find_center(space: SearchArrays, center: Array, drift: Array) -> None:
+    """Centre of mass (3,) [m] and its velocity (3,) [m] relative to the base, filled in.
+
+    Args:
+        space: its links have been moved and weighed.
+        center: filled in.
+        drift: filled in.
+    """
+    bodies, links = space.bodies, space.links
+    mass = total_mass(bodies)
+    for a in range(3):
+        center[a], drift[a] = bodies[0].lever[a] - links[0].arm[a], 0.0
+    for j in range(1, len(bodies)):
+        share, flow = bodies[j].mass / mass, links[j].flow
+        for a in range(3):
+            drift[a] += share * flow[a]
 
 
 @kernel

@@ -14,7 +14,7 @@ import numpy as np
 from ffsr_plan.collision.nearest_sphere_kernels import nearest_sphere
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.tree_search.kernels.attitude import angle_of
+from ffsr_plan.dynamics.kernels.quaternions import angle_of
 from ffsr_plan.tree_search.kernels.clear_step import place_shapes, put_in_world
 from ffsr_plan.tree_search.kernels.flight import distance, fly, locate, observe, path_length
 from ffsr_plan.tree_search.kernels.search_arrays import SearchArrays
@@ -74,17 +74,17 @@ def nearness(space: SearchArrays, states: Array, attitudes: Array, last: int) ->
 @kernel
 def clearance_at(space: SearchArrays, state: Array, attitude: Array) -> float:
     """Least distance to an obstacle at a state, at most that which F counts [m]."""
-    setup, memory = space.setup[0], np.empty(15)
-    position, turn, base = memory[:3], memory[3:12], memory[12:]
+    setup, memory = space.setup[0], np.empty(6)
+    position, base = memory[:3], memory[3:]
     setup.checks += 1
     observe(space, state, state, 0.0)
-    locate(space, state, state, 0.0, attitude, position, turn, base)
+    locate(space, state, state, 0.0, attitude, position, base)
     place_shapes(space)
     least = setup.cap
     if len(space.tree.spheres) == 0:
         return least
     for g in range(len(space.shapes)):
-        put_in_world(space, g, position, turn)
+        put_in_world(space, g, position, setup.turn)
         near, row = nearest_sphere(
             space.tree, space.shapes[g].kind, space.frame, space.still, least, -1, space.stack,
             space.bounds,

@@ -15,47 +15,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, Records
 from ffsr_plan.scene.sphere_tree import SphereTree
 
-Records = NDArray[Any]
 Record = Any
 TURN, JOINTS = 3, 4
 """Column of the angle that wheels have turned the base by, and first column of the joints."""
 
 _MATRIX = (3, 3)
-LINK = np.dtype(
-    [
-        ("parent", np.int64),
-        ("fixed", np.float64, _MATRIX),
-        ("sine", np.float64, _MATRIX),
-        ("versine", np.float64, _MATRIX),
-        ("offset", np.float64, 3),
-        ("slide", np.float64, 3),
-        ("turning", np.float64, 3),
-        ("sliding", np.float64, 3),
-        ("mass", np.float64),
-        ("lever", np.float64, 3),
-        ("inertia", np.float64, _MATRIX),
-        ("value", np.float64),
-        ("rate", np.float64),
-        ("rotation", np.float64, _MATRIX),
-        ("origin", np.float64, 3),
-        ("angular", np.float64, 3),
-        ("linear", np.float64, 3),
-    ],
-    align=True,
-)
-"""A link: what `kinematics` says of it and its body, then joint value, rate, pose and velocity at
-the configuration at hand, in base axes."""
-
 SHAPE = np.dtype(
     [
         ("link", np.int64),
         ("kind", np.int64),
         ("rotation", np.float64, _MATRIX),
         ("position", np.float64, 3),
-        ("core", np.float64, 3),
         ("skin", np.float64),
         ("reach", np.float64),
         ("frame", np.float64, 15),
@@ -64,10 +37,10 @@ SHAPE = np.dtype(
     ],
     align=True,
 )
-"""A collision shape: half sides of its core (a box, or a segment along z) and the distance by which
-its surface surrounds the core [m], largest distance of the core from its middle [m]; then rotation,
-position and size as of `Placements.frames`, velocity of its middle, and a bound on the speed of its
-core, all in base axes and relative to the base."""
+"""A collision shape: the distance by which its surface surrounds its core, a box or a segment along
+z, and the largest distance of the core from its middle [m]; then rotation, position and size as of
+`Placements.frames`, velocity of its middle, and a bound on the speed of its core, all in base axes
+and relative to the base."""
 
 SETUP = np.dtype(
     [
@@ -83,7 +56,7 @@ SETUP = np.dtype(
         ("goal", np.float64, 4),
         ("missed_weight", np.float64),
         ("largest_turn", np.float64),
-        ("rate", np.float64, 3),
+        ("turn", np.float64, _MATRIX),
         ("center", np.float64, 3),
         ("drift", np.float64, 3),
         ("checks", np.int64),
@@ -93,16 +66,19 @@ SETUP = np.dtype(
 """What actuates the base; axis of the wheels' turn, in base axes; centre of mass at the start,
 world [m]; clearances that are kept [m]; least travel between two checks [m]; cost of 1 / d at a
 station [m^2] and the largest clearance d that counts [m]; the attitude to arrive at and the cost of
-missing it [m/rad]; largest joint step of the integration [rad or m]. Then angular velocity of the
-base, centre of mass and its velocity at the configuration at hand, relative to the base, and the
-number of configurations checked so far."""
+missing it [m/rad]; largest joint step of the integration [rad or m]. Then rotation of the base,
+centre of mass and its velocity at the configuration at hand, relative to the base, and the number
+of configurations checked so far."""
 
 
 class SearchArrays(NamedTuple):
     """Robot, scene, settings and memory of a search.
 
     Attributes:
-        links: (n,) of `LINK`.
+        bodies: (n,) of `BODY`.
+        links: (n,) of `LINK_STATE`, at the configuration at hand.
+        robot: (1,) of `ROBOT_STATE`, at the configuration at hand.
+        joints: (2, nd) joint values there, and their rates.
         shapes: (g,) of `SHAPE`.
         pairs: (p, 2) shapes that must not touch each other.
         tree: the obstacles.
@@ -117,7 +93,10 @@ class SearchArrays(NamedTuple):
         still: (3,) zeros.
     """
 
+    bodies: Records
     links: Records
+    robot: Records
+    joints: Array
     shapes: Records
     pairs: IntArray
     tree: SphereTree

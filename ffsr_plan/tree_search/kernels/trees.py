@@ -13,7 +13,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.tree_search.kernels.attitude import angle_of, turned_back
+from ffsr_plan.dynamics.kernels.quaternions import angle_of, turned_back
 from ffsr_plan.tree_search.kernels.flight import distance, fly
 from ffsr_plan.tree_search.kernels.random_numbers import RandomState, below, normal, uniform
 from ffsr_plan.tree_search.kernels.search_arrays import JOINTS, SearchArrays
