@@ -81,7 +81,7 @@ def clearance_figure(
 
     m = plan.edges
     s = np.linspace(0.0, 1.0, m * samples_per_edge + 1)
-    query = ObstacleQuery(plan.problem.robot, plan.problem.scene)
+    query = ObstacleQuery(plan.problem.robot, plan.problem.obstacles)
     figure, axes = _axes(axes, 7.0, 3.2)
     axes.plot(s, query.distances(plan.at(s)), color=_PATH, lw=1.5, label="along the motion")
     axes.plot(np.arange(m + 1) / m, plan.clearances, "o", ms=3.5, color=_ROBOT, label="nodes")

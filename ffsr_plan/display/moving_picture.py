@@ -105,7 +105,7 @@ def _scene(plan: PlanData, count: int, axes: Array) -> _Scene:
         sorted(outlines(shapes, frames, row, axes), key=lambda outline: outline.height)
         for row in range(count)
     ]
-    query = ObstacleQuery(robot, plan.problem.scene)
+    query = ObstacleQuery(robot, plan.problem.obstacles)
     clearances = query.distances_at(frames.placements, rows, np.zeros((count, 3)))
     return _Scene(plan, frames, axes, drawn, clearances)
 

@@ -56,7 +56,9 @@ class Roadmap:
             )
         self.problem, self.deadline = problem, deadline or Deadline()
         self.lattice = LayeredLattice(problem)
-        self.prover = Prover(self.lattice.nominal, problem.scene, problem.tolerance, self.deadline)
+        self.prover = Prover(
+            self.lattice.nominal, problem.obstacles, problem.tolerance, self.deadline
+        )
         self.prover.check_ends()
         self.prover.check_self_collision(against_self_collision())
         self.nodes = NodeClearances(self.lattice, self.prover)
@@ -302,7 +304,9 @@ class Roadmap:
                 nearest.append(self.prover.nearest(layer + 1, at, at, 0.0))
         nearest.sort(key=lambda pair: pair.distance)
         pairs = {(pair.link, pair.obstacle): pair for pair in reversed(nearest)}
-        return tuple(named(self.problem.scene, p) for p in pairs.values() if p.obstacle is not None)
+        return tuple(
+            named(self.problem.obstacles, p) for p in pairs.values() if p.obstacle is not None
+        )
 
 
 def rule_out(

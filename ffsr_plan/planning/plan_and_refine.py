@@ -128,7 +128,7 @@ def refine(plan: Plan) -> Plan:
     if lattice is None or plan.lattice is None or lattice.postures:
         raise InvalidInput("plan", lattice, "a plan on a lattice without posture axes")
     nominal = plan.lattice.nominal
-    prover = Prover(nominal, plan.problem.scene, plan.problem.tolerance)
+    prover = Prover(nominal, plan.problem.obstacles, plan.problem.tolerance)
     offsets = plan.motion.positions - nominal.positions
     refined, _ = refined_path(plan.lattice, prover, offsets, plan.clearances)
     if refined is None:

@@ -29,7 +29,7 @@ from ffsr_plan.search.records import Branches, History, Trails
 
 PLAIN = (
     "delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight",
-    "tolerance", "reach_attitude",
+    "tolerance", "min_clearance", "reach_attitude",
 )  # fmt: skip
 """Fields of a problem that a file holds as they are."""
 _AGREEMENT = 1e-9  # [m, rad] between the motion and the configurations beside it

@@ -181,6 +181,7 @@ class ProblemTable:
     tolerance: Annotated[Any, AnyValue()]
     reach_attitude: Annotated[Any, AnyValue()]
     window: Annotated[Any, AnyValue()] = None
+    min_clearance: Annotated[Any, AnyValue()] = 0.0
 
 
 @settings

@@ -90,7 +90,7 @@ def whole_objective(problem: Problem, motion: Motion, length: float) -> float:
     if problem.delta == 0.0:
         return motion_objective(problem, length, np.full(pieces, np.inf))
     edge, time = stations(edge_lengths(problem, motion), pieces * _SAMPLES - 1)
-    query = ObstacleQuery(problem.robot, problem.scene)
+    query = ObstacleQuery(problem.robot, problem.obstacles)
     inner = query.distances(motion.at(edge, time))
     ends = query.distances(motion.configurations()[[0, -1]])
     all_of_them = np.concatenate([ends[:1], inner, ends[1:]])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
@@ -106,6 +107,8 @@ class Problem:
         position_weight: metres of length per metre of translation (Eq. 4).
         rotation_weight: metres of length per radian of joint or held-base rotation (Eq. 4).
         tolerance: clearance [m] below which an edge may count as blocked.
+        min_clearance: distance [m] from all obstacles that is kept, as proven as that nothing is
+            touched. Clearances of plans, and those in F, count beyond it.
         reach_attitude: whether the arms have to bring the base to the goal's attitude, within 1e-8
             rad; in the modes whose attitude reacts, on a lattice with posture axes.
         window: (2, 3) least and greatest coordinates of the base origin in the world [m], where
@@ -130,6 +133,7 @@ class Problem:
     position_weight: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] = 1.0
     rotation_weight: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 1.0
     tolerance: Annotated[float, Number(at_least=1e-7, at_most=_LARGEST)] = 1e-4
+    min_clearance: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 0.0
     reach_attitude: Annotated[bool, Truth()] = False
     window: Annotated[Given[Array | None, ArrayLike | None], Window()] = setting(default=None)
 
@@ -172,7 +176,7 @@ class Problem:
         held = self.mode.has_wheels
         goal = inverse_kinematics(
             self.robot,
-            self.scene,
+            self.obstacles,
             frame,
             position,
             attitude,
@@ -184,6 +188,11 @@ class Problem:
         )
         postures = self.lattice is not None and bool(self.lattice.postures)
         return replace(self, goal=goal, reach_attitude=postures and not held)
+
+    @cached_property
+    def obstacles(self) -> Scene:
+        """The scene, its spheres larger by `min_clearance`: what plans keep clear of."""
+        return self.scene.grown(self.min_clearance) if self.min_clearance > 0.0 else self.scene
 
     @property
     def base_displacement(self) -> Array:

@@ -215,7 +215,14 @@ else:
         Problem,
         "ObjectiveTable",
         "The table `[objective]`.",
-        ("delta", "length_unit", "clearance_cap", "position_weight", "rotation_weight"),
+        (
+            "delta",
+            "length_unit",
+            "clearance_cap",
+            "min_clearance",
+            "position_weight",
+            "rotation_weight",
+        ),
     )
 
 

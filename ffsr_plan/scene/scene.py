@@ -74,6 +74,16 @@ class Scene:
         object.__setattr__(self, "excess", number("scene excess", excess, at_least=0.0))
         object.__setattr__(self, "sources", _checked_sources(sources, len(r)))
 
+    def grown(self, by: float) -> Scene:
+        """The same spheres with larger radii; the names of their sources say so.
+
+        Args:
+            by: what is added to all radii [m].
+        """
+        names = self.sources or (("the scene", len(self.radii)),) * (len(self.radii) > 0)
+        sources = [(f"{name}, grown by {by:g} m", count) for name, count in names]
+        return Scene(self.centers, self.radii + by, self.excess, sources)
+
     @classmethod
     def from_csv(cls, path: str | Path) -> Scene:
         """Read spheres from a comma-separated table with the columns x, y, z and radius.

@@ -26,7 +26,7 @@ def check_ends(problem: Problem) -> None:
         StartInCollision: with all that touches there, and at the goal.
         GoalInCollision: with all that touches there.
     """
-    robot, scene = problem.robot, problem.scene
+    robot, scene = problem.robot, problem.obstacles
     certain = problem.mode.has_wheels or _touches_at_any_attitude(problem)
     around = scene if certain else Scene()
     touching = contacts(robot, around, problem.goal)
@@ -49,7 +49,7 @@ def _touches_at_any_attitude(problem: Problem) -> bool:
 
     That ball stays where it is, however the base is turned at the goal.
     """
-    robot, scene, shapes = problem.robot, problem.scene, problem.robot.primitives
+    robot, scene, shapes = problem.robot, problem.obstacles, problem.robot.primitives
     if problem.mode.floats or not len(scene) or not len(shapes.kinds):
         return False
     placed = shape_placements(robot, problem.goal[None])

@@ -34,7 +34,7 @@ def path_not_found(
     tried = restarts.meetings
     nodes = tried.nodes + int(restarts.trees.counts[:2].sum())
     meetings = tried.meetings + int(restarts.trees.counts[3])
-    contact = named(space.problem.scene, near) if np.isfinite(near.distance) else None
+    contact = named(space.problem.obstacles, near) if np.isfinite(near.distance) else None
     return PathNotFound(
         seconds,
         tried.tries,
@@ -58,7 +58,7 @@ def _in_the_way(space: SearchSpace, state: Array, attitude: Array, other: Array)
         anchor = space.arrays.setup[0]["anchor"]
         position = anchor - rotations.rotate(arrival[None], center)[0]
     q = robot.assemble(position, arrival, place[JOINTS:])
-    pairs = ObstacleQuery(robot, space.problem.scene).nearest(q), SelfQuery(robot).nearest(q)
+    pairs = ObstacleQuery(robot, space.problem.obstacles).nearest(q), SelfQuery(robot).nearest(q)
     return min(pairs, key=lambda pair: pair.distance)
 
 

@@ -68,7 +68,7 @@ def prove(space: SearchSpace, corners: Array, deadline: Deadline) -> PathProof:
         frozen(states[:, JOINTS:].copy()), turns,
     )  # fmt: skip
     m, still = motion.edges, np.zeros((motion.edges + 1, 3))
-    prover = Prover(motion, problem.scene, problem.tolerance, deadline)
+    prover = Prover(motion, problem.obstacles, problem.tolerance, deadline)
     clearances, refusals = prover.clearances(np.arange(m + 1), still), []
     ends = np.column_stack([clearances[:-1], clearances[1:]])
     verdicts = prover.certify_all(np.arange(m), still[1:], still[1:], ends)

@@ -103,7 +103,7 @@ class ProvenPaths:
             return False
         problem, motion = self._space.problem, proof.motion
         lengths = edge_lengths(problem, motion)
-        clearances = ObstacleQuery(problem.robot, problem.scene).distances(
+        clearances = ObstacleQuery(problem.robot, problem.obstacles).distances(
             motion.at(*stations(lengths))
         )
         length = float(lengths.sum())
@@ -136,7 +136,7 @@ class ProvenPaths:
         self._deadline.close()
         least, cut = proven_clearance(best.proof.prover, still, best.proof.clearances)
         queries = self._queries + best.proof.prover.queries - before
-        nodes = self._nodes if len(problem.scene) else 0
+        nodes = self._nodes if len(problem.obstacles) else 0
         if not self._rows or self._rows[-1][0] != best.objective:
             self.note(best.objective, 1)
         return Solution(

@@ -70,7 +70,7 @@ class SearchSpace:
             pairs=np.array(
                 [(p.first, p.second) for p in robot.collision_model.collisionPairs], dtype=np.int64
             ).reshape(-1, 2),
-            tree=problem.scene.tree,
+            tree=problem.obstacles.tree,
             setup=self._setup(margin),
             box=self._box(),
             weights=self._weights(),

@@ -171,5 +171,5 @@ def station_clearances(plan: PlanData, bodies: Bodies, lengths: Array) -> Array:
     place = np.interp(wanted, whole, np.arange(len(whole)))
     sampler = Sampler(plan, bodies)
     edge = np.minimum(place.astype(np.int64), sampler.edges - 1)
-    distances = SampledDistances(bodies, plan.problem.scene, plan.problem.start[:3])
+    distances = SampledDistances(bodies, plan.problem.obstacles, plan.problem.start[:3])
     return distances.clearances(sampler.at(edge, place - edge))

@@ -116,7 +116,7 @@ class LatticePath:
             edge = np.minimum(order, sampler.edges - 1)
             samples = sampler.at(edge, (order - edge).astype(np.float64))
             samples = samples._replace(base_places=self.positions - problem.start[:3])
-            distances = SampledDistances(bodies, problem.scene, problem.start[:3])
+            distances = SampledDistances(bodies, problem.obstacles, problem.start[:3])
             nodes = distances.clearances(samples)
         value = objective_of(problem, length_of(problem, self.positions, self.joint_values), nodes)
         return float(nodes.min()), value, tolerances(problem, bodies, nodes, value)[1]

@@ -140,7 +140,7 @@ class _Sweep:
     def __init__(self, plan: PlanData, bodies: Bodies, samples: int) -> None:
         self._per_edge = samples
         self.sampler = Sampler(plan, bodies)
-        self.distances = SampledDistances(bodies, plan.problem.scene, plan.problem.start[:3])
+        self.distances = SampledDistances(bodies, plan.problem.obstacles, plan.problem.start[:3])
         self.found = Swept(self.sampler.edges)
         mode, edges = plan.problem.mode, self.sampler.edges
         moved = np.linalg.norm(np.diff(self.sampler.positions, axis=0), axis=1)

@@ -35,12 +35,12 @@ def _bound(lattice: PostureLattice) -> float:
     problem, base = lattice.problem, lattice.base
     m, count = problem.given_lattice.divisions, len(base.offsets)
     apart = np.full((m + 1, count), np.inf)
-    if origin_is_inside(lattice) and len(problem.scene) and not base.nominal.mode.floats:
+    if origin_is_inside(lattice) and len(problem.obstacles) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets
         apart = np.empty((m + 1, count))
         for own, points in zip(apart, places, strict=True):
             lattice.deadline.check()
-            own[:] = _point_clearances(problem.scene, points)
+            own[:] = _point_clearances(problem.obstacles, points)
     nodes = nearness(problem, apart)  # at least that of `clearance_cap`
     nodes[[0, -1]] = 0.0
     status = np.zeros((m, count, count), dtype=np.int8)

@@ -92,7 +92,7 @@ def prove_path(lattice: PostureLattice, positions: Array, joints: Array) -> Path
     problem = lattice.problem
     motion = Motion(problem.robot, problem.mode, problem.start, problem.goal, positions, joints)
     lattice.deadline.check()
-    prover = Prover(motion, problem.scene, problem.tolerance, lattice.deadline)
+    prover = Prover(motion, problem.obstacles, problem.tolerance, lattice.deadline)
     m = len(positions) - 1
     still = np.zeros(3)
     clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
@@ -169,11 +169,11 @@ def check_start(problem: Problem) -> None:
     """
     start = problem.start
     motion = Motion(problem.robot, problem.mode, start, start, np.tile(start[:3], (2, 1)))
-    prover = Prover(motion, problem.scene, problem.tolerance)
+    prover = Prover(motion, problem.obstacles, problem.tolerance)
     still = np.zeros(3)
     for near in (prover.nearest(0, still, still, 0.0), prover.nearest_links(0, 0.0)):
         if near.distance <= 0.0:
-            raise start_in_collision(problem.robot, problem.scene, start)
+            raise start_in_collision(problem.robot, problem.obstacles, start)
 
 
 def unproven(problem: Problem, edge: RefusedEdge, cut_short: bool) -> UnprovenPath:
@@ -184,7 +184,7 @@ def unproven(problem: Problem, edge: RefusedEdge, cut_short: bool) -> UnprovenPa
         edge: the first refused edge.
         cut_short: whether a time limit ended the search.
     """
-    contact = named(problem.scene, Nearest(edge.distance, edge.link, edge.obstacle))
+    contact = named(problem.obstacles, Nearest(edge.distance, edge.link, edge.obstacle))
     advice = for_proof(problem, cut_short, isinstance(edge.obstacle, str))
     return UnprovenPath(
         edge.layer + 1,

@@ -26,7 +26,7 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
     if nominal.mode.floats:  # the centre of mass, at rest
         center = rotate(problem.start[3:7], lattice.centers[0, lattice.origin])
         places = np.broadcast_to(problem.start[:3] + center, places.shape)
-    tree = problem.scene.tree
+    tree = problem.obstacles.tree
     return PostureGrid(
         obstacles=Obstacles(
             np.array(tree.nodes),
