@@ -107,15 +107,15 @@ class Problem:
         position_weight: metres of length per metre of translation (Eq. 4).
         rotation_weight: metres of length per radian of joint or held-base rotation (Eq. 4).
         tolerance: clearance [m] below which an edge may count as blocked.
-        min_clearance: distance [m] from all obstacles that is kept, as proven as that nothing is
-            touched. Clearances of plans, and those in F, count beyond it.
         reach_attitude: whether the arms have to bring the base to the goal's attitude, within 1e-8
-            rad; in the modes whose attitude reacts, on a lattice with posture axes.
+            rad; in the modes whose attitude reacts, on a lattice with posture axes or without one.
         window: (2, 3) least and greatest coordinates of the base origin in the world [m], where
             thrusters move it and there is no lattice; along an axis on which both are equal it
             stays where it is. None for the box around start and goal, larger on all sides by half
             their distance and the robot's reach; flat where all joint axes are parallel to an axis
             of the world that start and goal do not differ along.
+        min_clearance: distance [m] from all obstacles that is kept, as proven as that nothing is
+            touched. Clearances of plans, and those in F, count beyond it.
 
     Raises:
         InvalidInput: naming the field, its value and what is allowed.
@@ -133,9 +133,9 @@ class Problem:
     position_weight: Annotated[float, Number(at_least=_LEAST, at_most=_LARGEST)] = 1.0
     rotation_weight: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 1.0
     tolerance: Annotated[float, Number(at_least=1e-7, at_most=_LARGEST)] = 1e-4
-    min_clearance: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 0.0
     reach_attitude: Annotated[bool, Truth()] = False
     window: Annotated[Given[Array | None, ArrayLike | None], Window()] = setting(default=None)
+    min_clearance: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 0.0
 
     def __post_init__(self) -> None:
         self._check_travel()
@@ -268,8 +268,9 @@ class Problem:
         """Raise `InvalidInput` if `reach_attitude` is set and cannot be."""
         if self.reach_attitude and self.mode.has_wheels:
             raise InvalidInput("reach_attitude", True, "False where wheels hold the attitude")
-        if self.reach_attitude and not (self.lattice and self.lattice.postures):
-            raise InvalidInput("reach_attitude", True, "a lattice with posture axes")
+        if self.reach_attitude and self.lattice and not self.lattice.postures:
+            allowed = "a lattice with posture axes, or none"
+            raise InvalidInput("reach_attitude", True, allowed)
 
     def _check_displacement(self) -> None:
         """Raise `InvalidInput` if nothing has to move, or an axis has no direction of travel."""

@@ -27,7 +27,8 @@ def check_ends(problem: Problem) -> None:
         GoalInCollision: with all that touches there.
     """
     robot, scene = problem.robot, problem.obstacles
-    certain = problem.mode.has_wheels or _touches_at_any_attitude(problem)
+    demanded = problem.reach_attitude and not problem.mode.floats
+    certain = problem.mode.has_wheels or demanded or _touches_at_any_attitude(problem)
     around = scene if certain else Scene()
     touching = contacts(robot, around, problem.goal)
     if contacts(robot, scene, problem.start):

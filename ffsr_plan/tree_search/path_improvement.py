@@ -7,6 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.tree_search.kernels.closed_loops import ENOUGH, LOOP_CORNERS, insert_loops
 from ffsr_plan.tree_search.kernels.flight import fly_path
 from ffsr_plan.tree_search.kernels.layered_search import (
     GOING_ON,
@@ -22,7 +24,7 @@ from ffsr_plan.tree_search.kernels.random_numbers import RandomState
 from ffsr_plan.tree_search.restarts import CHUNK
 from ffsr_plan.tree_search.search_space import SearchSpace
 
-_ROOM = 64  # corners that may be added to a path
+_ROOM, _ROOM_FOR_LOOPS = 64, 400  # corners that may be added to a path
 _SPREAD = 0.3  # of the largest moves of a corner
 _STATIONS = 12  # at which two paths are compared
 _AS_ONE = 0.5  # distance up to which two paths go one way round
@@ -54,6 +56,8 @@ class ImprovedPath:
         self._expired = expired
         self._space, self.last = space, len(states) - 1
         room = max(len(states), LAYERS + 2) + _ROOM
+        if space.problem.reach_attitude:
+            room += _ROOM_FOR_LOOPS
         self._memory = PathMemory(
             np.zeros((2, room, states.shape[1])), np.zeros((2, room, 4)), np.zeros(room)
         )
@@ -86,6 +90,24 @@ class ImprovedPath:
         while self._goes_on(end):
             stop = min(self._until(CHUNK), end)
             self.last = improve(self._space.arrays, self._memory, self.last, random, _SPREAD, stop)
+        self._weigh()
+
+    @property
+    def missed(self) -> float:
+        """Angle by which it misses the attitude that is demanded [rad], or 0."""
+        setup = self._space.arrays.setup[0]
+        if setup["missed_weight"] == 0.0:
+            return 0.0
+        return float(angle_between(self._memory.attitudes[0, self.last], setup["goal"]))
+
+    def turn(self, random: RandomState, checks: int) -> None:
+        """Insert closed loops of the joints that bring the base to the attitude demanded."""
+        end = self._until(checks)
+        while self.missed >= ENOUGH and self._goes_on(end):
+            if self.last + LOOP_CORNERS >= self._memory.states.shape[1]:
+                break
+            stop = min(self._until(CHUNK), end)
+            self.last = insert_loops(self._space.arrays, self._memory, self.last, random, stop)
         self._weigh()
 
     def search_around(self, random: RandomState, checks: int) -> bool:

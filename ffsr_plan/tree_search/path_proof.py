@@ -9,7 +9,10 @@ import numpy as np
 
 from ffsr_plan.collision.distances import Nearest
 from ffsr_plan.core.arrays import Array, frozen
+from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.dynamics.attitude_correction import corrected
 from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.kernels.search_arrays import JOINTS, TURN
@@ -39,6 +42,7 @@ class PathProof(NamedTuple):
         prover: proofs along it.
         clearances: (m + 1,) at the ends of its edges [m].
         refusals: edges that could not be proven free.
+        missed: angle by which the attitude that is demanded is missed [rad], or 0.
     """
 
     states: Array
@@ -46,6 +50,7 @@ class PathProof(NamedTuple):
     prover: Prover
     clearances: Array
     refusals: list[Refusal]
+    missed: float
 
 
 def prove(space: SearchSpace, corners: Array, deadline: Deadline) -> PathProof:
@@ -60,6 +65,8 @@ def prove(space: SearchSpace, corners: Array, deadline: Deadline) -> PathProof:
         OutOfTime: by the deadline.
     """
     problem, states = space.problem, cut(space, corners)
+    if problem.reach_attitude:
+        states = _turned(problem, states, deadline)
     turns = None
     if space.goals[0, TURN] > 0.0:
         turns = states[:, TURN] / space.goals[0, TURN]
@@ -77,7 +84,23 @@ def prove(space: SearchSpace, corners: Array, deadline: Deadline) -> PathProof:
             refusals.append(Refusal(edge, prover.nearest(edge, still[0], still[0], verdict.time)))
         elif not links.free:
             refusals.append(Refusal(edge, prover.nearest_links(edge, links.time)))
-    return PathProof(states, motion, prover, frozen(clearances), refusals)
+    missed = 0.0
+    if problem.reach_attitude:
+        missed = float(angle_between(motion.attitudes[-1], problem.goal[3:7]))
+    return PathProof(states, motion, prover, frozen(clearances), refusals, missed)
+
+
+def _turned(problem: Problem, states: Array, deadline: Deadline) -> Array:
+    """(m + 1, D) the states with joints that bring the base to the attitude demanded.
+
+    They hardly differ; where the correction does not converge, they are the same.
+    """
+    joints = states[:, JOINTS:]
+    directions = np.broadcast_to(np.eye(joints.shape[1]), (*joints.shape, joints.shape[1]))
+    found = corrected(
+        problem.robot, problem.start[3:7], problem.goal[3:7], joints, directions, None, deadline
+    )
+    return states if found is None else np.hstack([states[:, :JOINTS], found])
 
 
 def cut(space: SearchSpace, corners: Array) -> Array:

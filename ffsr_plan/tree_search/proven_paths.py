@@ -27,6 +27,7 @@ from ffsr_plan.tree_search.search_space import SearchSpace
 _WORTH = 0.005  # share of its cost by which a path has to be better to be proven
 _NEAR = 0.2  # least distance of states within which a larger margin is kept after a refusal
 _RESERVE = 1.3  # for the last proof, as a multiple of the time of the longest
+_MISSED = 1e-8  # [rad] of an attitude that is demanded
 _MOST_BRANCHES = 10_000  # edges of the trees that are kept for pictures
 
 
@@ -100,6 +101,8 @@ class ProvenPaths:
         if refused:
             self.refused += 1
             self._bar(proof)
+            return False
+        if proof.missed > _MISSED:
             return False
         problem, motion = self._space.problem, proof.motion
         lengths = edge_lengths(problem, motion)

@@ -159,6 +159,8 @@ class Restarts:
         arrival = np.zeros(4)
         for goal in space.goals:
             fly(space.arrays, start, trees.attitudes[0, 0], goal, arrival, False)
+            if space.problem.reach_attitude:
+                arrival = space.problem.goal[3:7].copy()
             plant(trees, goal, arrival)
         return trees
 

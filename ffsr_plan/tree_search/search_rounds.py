@@ -10,6 +10,7 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import SearchMonitor, Solution, TreeCycle
 from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.end_checks import check_ends
+from ffsr_plan.tree_search.kernels.closed_loops import ENOUGH
 from ffsr_plan.tree_search.kernels.flight import fly
 from ffsr_plan.tree_search.kernels.random_numbers import random_state
 from ffsr_plan.tree_search.not_found import path_not_found
@@ -22,6 +23,7 @@ from ffsr_plan.tree_search.tree_settings import TreeSettings
 _FIRST_ROUND = 60_000  # configurations checked
 _SEARCHING = 0.5  # share of a round that is spent on new paths
 _AT_FIRST = 4_000  # configurations checked to straighten a path that was just found
+_TURNING = 30_000  # at most, for loops that turn the base
 _THINNING = 20_000  # at most, to leave out corners
 _FOR_NEW = 16_000  # to improve a path before it is compared with others
 _AROUND = 30_000  # at most, for a search around a path
@@ -116,6 +118,8 @@ class SearchRounds:
         for goal in space.goals:
             if fly(space.arrays, space.start, arrival[0], goal, arrival[1], True) == 1.0:
                 path = self._path(np.stack([space.start, goal]), arrival)
+                if path.missed > ENOUGH:
+                    return False
                 self._paths.append(path)
                 return self._prove(path) and space.problem.delta == 0.0
         return False
@@ -139,6 +143,9 @@ class SearchRounds:
             path = self._path(*found)
             path.move(self._random, _AT_FIRST)
             path.thin(_THINNING)
+            path.turn(self._random, _TURNING)
+            if path.missed > ENOUGH:
+                continue
             if self.proven.best is None:
                 if not self._prove(path):
                     continue

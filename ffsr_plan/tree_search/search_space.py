@@ -29,6 +29,7 @@ _LEAST_STEP = 0.008  # [m] of travel between two checks
 _LARGEST_TURN = 0.15  # [rad or m] of a joint in a step of the integration
 _JOINT_WEIGHT = 0.6  # metres that a radian counts in distances of the search
 _BEYOND = 0.5  # [rad] beyond both ways round that a continuous joint may go
+_MISSED_WEIGHT = 400.0  # metres of length that a radian of a missed attitude counts
 _MOST_GOALS = 8  # ways round of continuous joints, shortest first
 
 
@@ -157,6 +158,8 @@ class SearchSpace:
         unit = problem.length_unit
         setup["nearness_weight"] = problem.delta * unit**2
         setup["cap"] = np.inf if problem.clearance_cap is None else problem.clearance_cap
+        if problem.reach_attitude:
+            setup["goal"], setup["missed_weight"] = problem.goal[3:7], _MISSED_WEIGHT
         setup["least_step"], setup["largest_turn"] = _LEAST_STEP, _LARGEST_TURN
         return setup
 

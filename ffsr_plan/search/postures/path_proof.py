@@ -12,12 +12,12 @@ from ffsr_plan.collision.distances import Nearest
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import UnprovenPath
 from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.dynamics.attitude_correction import corrected
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.advice import for_proof
 from ffsr_plan.problem.objective import objective, path_length
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
-from ffsr_plan.search.postures.attitude_correction import corrected
 from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
 
 GOAL_TOLERANCE = 1e-8

@@ -21,7 +21,8 @@ from ffsr_plan.tree_search.kernels.search_arrays import SearchArrays
 
 STATIONS = 39
 _NEAREST = 1e-9  # [m] that a clearance counts at least
-_SLACK = 0.002  # [rad] of the goal attitude that costs nothing: it is corrected in the end
+SLACK = 0.002
+"""Error of the attitude on arrival that costs nothing, as it is corrected in the end [rad]."""
 
 
 @kernel
@@ -38,7 +39,7 @@ def path_cost(space: SearchArrays, states: Array, attitudes: Array, last: int) -
     cost = path_length(space.weights, states, last)
     if setup.missed_weight > 0.0:
         missed = angle_of(attitudes[last], setup.goal)
-        cost += setup.missed_weight * max(0.0, missed - _SLACK)
+        cost += setup.missed_weight * max(0.0, missed - SLACK)
     if setup.nearness_weight > 0.0 and len(space.tree.spheres) > 0:
         cost += setup.nearness_weight * nearness(space, states, attitudes, last)
     return cost

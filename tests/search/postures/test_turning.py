@@ -9,10 +9,10 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
+from ffsr_plan.dynamics.attitude_correction import attitude_slopes, corrected
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.search.postures import posture_lattice
-from ffsr_plan.search.postures.attitude_correction import attitude_slopes, corrected
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import CORRECTABLE
 from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
