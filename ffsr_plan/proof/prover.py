@@ -243,7 +243,11 @@ class Prover:
 
         Returns:
             The bound [m].
+
+        Raises:
+            OutOfTime: at the deadline.
         """
+        self._deadline.check()
         if self._course is not None and self._exact:
             from ffsr_plan.proof.kernels.path_clearance import parts_for, path_clearance
 
