@@ -33,7 +33,7 @@ _GAIN = 1e-9  # [m] by which a path has to be better
 def insert_loops(
     space: SearchArrays, memory: PathMemory, last: int, random: RandomState, checks: int
 ) -> int:
-    """Insert the best of some loops again and again, until the attitude is nearly met or time is up.
+    """Insert the best of some loops again and again, until the attitude is nearly met.
 
     Args:
         space: robot, scene and settings, with the attitude to arrive at.
