@@ -30,7 +30,8 @@ from ffsr_plan.tree_search.tree_planner import TreePlanner
 
 _NOTABLE = 1e-4  # [rad] or [m]
 _HOW_TO_REACH_IT = (
-    "attitude-held holds both, and reach_attitude on a lattice with posture axes the attitude"
+    "attitude-held holds both; reach_attitude the attitude, where the lattice has posture axes or "
+    "there is none"
 )
 _MOST_WORKERS = 256  # each is a process of some hundred megabytes
 

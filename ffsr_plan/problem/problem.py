@@ -156,8 +156,8 @@ class Problem:
         """The same problem with a goal at which a frame has the wanted pose.
 
         As far as the mode prescribes the base pose, it is that of the present goal. On a lattice
-        with posture axes the base has to arrive at the attitude that belongs to the pose. See
-        `inverse_kinematics`.
+        with posture axes, or without a lattice, the base has to arrive at the attitude that belongs
+        to the pose. See `inverse_kinematics`.
 
         Args:
             frame: name of a link, joint or other frame of the model.
@@ -186,8 +186,8 @@ class Problem:
             base_attitude=to_angles(self.goal[3:7]) if held else None,
             seed=seed,
         )
-        postures = self.lattice is not None and bool(self.lattice.postures)
-        return replace(self, goal=goal, reach_attitude=postures and not held)
+        turns = self.lattice is None or bool(self.lattice.postures)
+        return replace(self, goal=goal, reach_attitude=turns and not held)
 
     @cached_property
     def obstacles(self) -> Scene:

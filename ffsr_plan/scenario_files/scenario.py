@@ -132,8 +132,7 @@ def _scenario(file: ScenarioFile, folder: Path) -> Scenario:
         window=None if file.window is None else [file.window.low, file.window.high],
         reach_attitude=demanded
         and mode.attitude_reacts
-        and file.lattice is not None
-        and bool(file.lattice.postures),
+        and (file.lattice is None or bool(file.lattice.postures)),
         **{each.name: getattr(file.objective, each.name) for each in fields(file.objective)},
     )
     planner = file.planner
@@ -150,12 +149,13 @@ def _check_goal(file: ScenarioFile) -> None:
                 goal.attitude,
                 f"none beside end_effector in the mode {mode}, where it follows from the arms",
             )
-        if file.lattice is None or not file.lattice.postures:
+        if file.lattice is not None and not file.lattice.postures:
             raise InvalidInput(
                 "goal.attitude",
                 goal.attitude,
                 f"no goal attitude in the mode {mode}, where it follows from the arms, on a "
-                "lattice without posture axes; leave it out, or use mode = 'attitude-held'",
+                "lattice without posture axes; leave it or the lattice out, or use "
+                "mode = 'attitude-held'",
             )
     if goal.position is not None and mode.floats:
         raise InvalidInput(

@@ -70,5 +70,7 @@ def _advice(space: SearchSpace, interrupted: bool) -> tuple[str, ...]:
     if problem.mode.has_thrusters:
         low, high = problem.base_window.round(3).tolist()
         advice.append(f"a wider window than {low} to {high}")
+    if problem.reach_attitude:
+        advice.append("a goal attitude nearer to that of the start")
     advice.append("another start or goal")
     return tuple(advice)

@@ -77,3 +77,22 @@ def test_loops_end_near_the_attitude_and_are_flown_truthfully(robot):
     flown[0, 3] = 1.0
     assert fly_path(space.arrays, path.states, flown, 0, path.last) == path.last
     assert np.array_equal(path.states[-1], space.goals[0])
+
+
+def test_a_pose_that_is_wanted_is_reached_after_a_detour():
+    robot = fp.load_robot("satellite_ur5")
+    start = robot.configuration(joints="stowed")
+    problem = fp.Problem(
+        robot, fp.Scene([[0.8, 0.0, 1.2]], [0.1]), start, robot.neutral(), "free-floating"
+    ).reaching("arm_tool0", [1.0, 0.3, 0.9])
+    assert problem.reach_attitude
+    plan = fp.plan(problem, until="first")
+    assert plan.verify().ok
+    assert plan.arrival_attitude_error < 1e-8
+    assert np.linalg.norm(plan.configurations[-1] - problem.goal) < 1e-6
+
+
+def test_an_attitude_out_of_time_is_reported_with_what_may_help(robot):
+    problem = turned(robot, (3.0, 0.0, 0.0))
+    with pytest.raises(fp.PathNotFound, match="a goal attitude nearer to that of the start"):
+        fp.plan(problem, fp.TreePlanner(checks=3_000))
