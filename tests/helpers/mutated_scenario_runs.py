@@ -36,6 +36,9 @@ def base_scenarios():
     """The bundled scenarios with short searches."""
     for path in sorted(bundled_files.folder("scenarios").glob("*.toml")):
         data = tomllib.loads(path.read_text(encoding="utf-8"))
+        if "lattice" not in data:
+            yield data | {"planner": {"checks": 2000}}
+            continue
         postures = bool(data["lattice"].get("postures"))
         if path.stem == "spatial_turn":
             data["lattice"]["divisions"] = 8
