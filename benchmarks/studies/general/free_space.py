@@ -2,10 +2,10 @@
 
     python -m benchmarks.studies.general.free_space
 
-The problems of classes 1 to 5 are in `problems.json`, twenty of each: random postures among
-spheres, walls with gaps, cups, a free-floating UR5 beside a box of spheres, and a UR5 satellite
-with panels that flies past spheres. Each plan is verified. Times are processor time of one thread,
-without compiling.
+The problems are in `problems.json`, twenty of each: random postures among spheres, walls with gaps,
+cups, a free-floating UR5 beside a box of spheres, a UR5 satellite with panels that flies past
+spheres, and goal attitudes. Each plan is verified. Times are processor time of one thread, without
+compiling.
 """
 
 import argparse
@@ -26,6 +26,7 @@ NAMES = {
     3: "cups",
     4: "UR5 beside a box, free-floating",
     5: "UR5 satellite past spheres",
+    6: "goal attitudes",
 }
 
 
@@ -51,6 +52,7 @@ def problems(kind: int, count: int) -> list[fp.Problem]:
             each["goal"],
             each["mode"],
             window=None if each["mode"] == "free-floating" else (each["low"], each["high"]),
+            reach_attitude=each.get("reach_attitude", False),
         )
         for each in tables[:count]
     ]
