@@ -18,6 +18,7 @@ CHUNK = 500
 _MOST_PAIRS = 200_000  # of nodes whose distances are computed for an error
 _FIRST_NODES = 20_000  # of each tree of a first try; longer ones have more
 _CHECKS_A_NODE = 4  # at least
+_MOST_NODES, _MOST_CHECKS = 500_000, 10**10  # of a try, however many there were before
 
 
 class FoundPath(NamedTuple):
@@ -131,6 +132,7 @@ class Restarts:
         self._tally()
         tries = self.meetings.tries
         self._left = self._first * 2 ** (tries // len(self._reaches))
+        self._left = min(self._left, _MOST_CHECKS)
         self.trees = self._planted()
         self.meetings = self.meetings._replace(tries=tries + 1)
 
@@ -146,7 +148,7 @@ class Restarts:
     def _planted(self) -> Trees:
         """Trees that consist of their roots."""
         space, start = self._space, self._space.start
-        capacity = max(_FIRST_NODES, self._left // _CHECKS_A_NODE)
+        capacity = min(max(_FIRST_NODES, self._left // _CHECKS_A_NODE), _MOST_NODES)
         trees = Trees(
             np.zeros((2, capacity, len(start))),
             np.zeros((2, capacity, 4)),

@@ -105,3 +105,12 @@ def test_samples_and_nodes_stay_in_the_box(robot):
         states = restarts.trees.states[side, : restarts.trees.counts[side]]
         assert np.all(states >= low - 1e-12)
         assert np.all(states <= high + 1e-12)
+
+
+def test_after_very_many_tries_the_trees_still_fit_into_memory(point):
+    goal = point.configuration((4.0, 0.0, 0.0))
+    problem = fp.Problem(point, fp.Scene([[2.0, 0.0, 0.0]], [0.5]), point.configuration(), goal)
+    _, restarts, _ = searched(problem)
+    restarts.meetings = restarts.meetings._replace(tries=1000)
+    assert restarts.find(1000) is not None or restarts.trees.states.shape[1] <= 500_000
+    assert restarts.trees.states.nbytes < 1e8
