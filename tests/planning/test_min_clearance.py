@@ -46,7 +46,9 @@ def test_a_plan_that_does_not_keep_it_does_not_verify():
     plan = fp.plan(problem_of("fig2a", 12), fp.LatticeOptimum())
     assert plan.verify(10).ok
     near = replace(plan, problem=replace(plan.problem, min_clearance=0.5))
-    assert not near.verify(10).ok
+    report = near.verify(10)
+    assert not report.ok
+    assert report.least_clearance == pytest.approx(plan.verify(10).least_clearance - 0.5, abs=0.01)
 
 
 def test_ends_that_do_not_keep_it_are_reported_with_the_distance_they_lack(point):

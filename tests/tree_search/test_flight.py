@@ -7,7 +7,7 @@ import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.tree_search.kernels.flight import fly
+from ffsr_plan.tree_search.kernels.flight import fly, locate, observe
 from ffsr_plan.tree_search.kernels.search_arrays import JOINTS, TURN
 from ffsr_plan.tree_search.search_space import SearchSpace
 
@@ -144,3 +144,19 @@ def test_links_near_each_other_at_an_end_are_left_to_the_proof():
     pairs = [len(SearchSpace(problem, margin).arrays.pairs) for margin in (1e-3, 0.1, 10.0)]
     assert pairs[0] > pairs[1] > pairs[2] == 0
     assert fp.plan(problem, until="first").verify().ok
+
+
+def test_a_floating_base_is_where_the_centre_of_mass_leaves_it():
+    robot, rng = fp.load_robot("satellite_ur5"), np.random.default_rng(1)
+    start, goal = ends(robot, rng)
+    space = SearchSpace(fp.Problem(robot, fp.Scene(), start, goal, "free-floating"), 1e-3)
+    begin, end, quat, times = space.start, space.goals[0], start[3:7].copy(), np.linspace(0, 1, 7)
+    motion = Motion(
+        robot, "free-floating", start, goal, np.stack([start[:3]] * 2),
+        np.stack([begin[JOINTS:], end[JOINTS:]]),
+    )  # fmt: skip
+    for time, q in zip(times, motion.at(np.zeros(7, dtype=np.int64), times), strict=True):
+        position, velocity, quat = np.zeros(3), np.zeros(3), q[3:7].copy()
+        observe(space.arrays, begin, end, float(time))
+        locate(space.arrays, begin, end, float(time), quat, position, velocity)
+        assert np.allclose(position, q[:3], atol=1e-9)
