@@ -1,11 +1,12 @@
-"""Comparison of speed with a baseline, as ratios to `pin.computeDistances`.
+"""Comparison of speed with a baseline, as ratios to `pin.computeDistances`, and with limits.
 
     python -m benchmarks.speed.compare                  # runs pytest benchmarks, then compares
     python -m benchmarks.speed.compare benchmarks.json  # compares what --benchmark-json wrote
     python -m benchmarks.speed.compare --update         # makes what was measured the baseline
 
 Ratios depend less on the machine than seconds do. The exit status is 1 if a ratio grew by more than
---limit. Measure a baseline on an idle machine only.
+--limit since the baseline, or if one is above what `limits.json` allows. Measure a baseline on an
+idle machine only.
 """
 
 import argparse
@@ -14,18 +15,53 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 HERE = Path(__file__).parent
-BASELINE = HERE / "baseline.json"
+BASELINE, LIMITS = HERE / "baseline.json", HERE / "limits.json"
+_SPREAD = 1.5  # of a time from one machine to another
 
 
-def measured(file: Path) -> dict[str, float]:
-    """Ratios by name of benchmark, from the JSON of pytest-benchmark."""
+class Speed(NamedTuple):
+    """What was measured: the median time [s], and its ratio to the reference."""
+
+    seconds: float
+    ratio: float
+
+
+class Limit(NamedTuple):
+    """A row of `limits.json`: what is timed, what it took, what is allowed."""
+
+    what: str
+    found: str
+    allowed: str
+    kept: bool
+
+
+def measured(file: Path) -> dict[str, Speed]:
+    """Speeds by name of benchmark, from the JSON of pytest-benchmark."""
     report = json.loads(file.read_text(encoding="utf-8"))
-    return {b["name"]: float(b["extra_info"]["ratio"]) for b in report["benchmarks"]}
+    return {
+        b["name"]: Speed(float(b["stats"]["median"]), float(b["extra_info"]["ratio"]))
+        for b in report["benchmarks"]
+    }
 
 
-def measure() -> dict[str, float]:
+def limits(now: dict[str, Speed]) -> list[Limit]:
+    """All rows of `limits.json`; a time may be above its limit by half."""
+    rows = []
+    for row in json.loads(LIMITS.read_text(encoding="utf-8")):
+        speed, unit = now.get(row["benchmark"]), "ratio" if "ratio" in row else "seconds"
+        allowed = row[unit] * (1.0 if unit == "ratio" else _SPREAD)
+        found = getattr(speed, unit) if speed else None
+        shown = "not measured" if found is None else f"{found:.3g}"
+        rows.append(
+            Limit(row["what"], shown, f"{row[unit]:g} {unit}", found is None or found <= allowed)
+        )
+    return rows
+
+
+def measure() -> dict[str, Speed]:
     """Run the benchmarks now."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "benchmarks.json"
@@ -62,17 +98,24 @@ def main() -> int:
     parser.add_argument("--update", action="store_true", help="rewrite the baseline")
     parser.add_argument("--limit", type=float, default=1.5, help="factor that counts as slower")
     args = parser.parse_args()
-    now = measured(args.file) if args.file else measure()
+    speeds = measured(args.file) if args.file else measure()
+    now = {name: speed.ratio for name, speed in speeds.items()}
     before = {}
     if args.baseline.exists():
         before = json.loads(args.baseline.read_text(encoding="utf-8"))
-    print("\n".join(report(before, now, args.limit)))
+    print("\n".join(report(before, now, args.limit)), end="\n\n")
+    rows = limits(speeds)
+    width = max(len(row.what) for row in rows)
+    for row in rows:
+        mark = "" if row.kept else "  above"
+        print(f"{row.what:{width}}  {row.found:>12} of {row.allowed}{mark}")
     if args.update:
         rounded = {name: float(f"{ratio:.4g}") for name, ratio in now.items()}
         args.baseline.write_text(json.dumps(rounded, indent=2) + "\n", encoding="utf-8")
         print(f"wrote {args.baseline}")
         return 0
-    return int(any(factor > args.limit for factor in changes(before, now).values()))
+    slower = any(factor > args.limit for factor in changes(before, now).values())
+    return int(slower or not all(row.kept for row in rows))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.collision.nearest_sphere_kernels import (
+    nearest_pairs,
     nearest_pairs_from,
     nearest_to_each,
     pairs_below,
@@ -138,6 +139,26 @@ class ObstacleQuery:
             (n,) distances [m], infinite in an empty scene.
         """
         return self._pairs(placed, places, shifts)[0]
+
+    def closed_at(self, placed: Placements, places: IntArray, shifts: Array) -> Array:
+        """The same in closed form, without a query of Coal where no shape is a hull.
+
+        Args:
+            placed: K placements of the shapes.
+            places: (n,) which of the K; fastest if successive ones are close in space.
+            shifts: (n, 3) displacements of the whole robot [m].
+
+        Returns:
+            (n,) distances [m], infinite in an empty scene.
+        """
+        if self.empty or self._bounds_only:
+            return self.distances_at(placed, places, shifts)
+        kinds, frames, found = self._shapes.kinds, placed.frames, np.empty(len(places))
+        for first in range(0, len(places), self._at_once):
+            self._deadline.check()
+            some = slice(first, first + self._at_once)
+            found[some] = nearest_pairs(self._tree, kinds, frames, places[some], shifts[some])[0]
+        return found
 
     def nearest_at(self, placed: Placements, place: int, shift: Array) -> Nearest:
         """The nearest pair of one placement, displaced.
@@ -307,6 +328,22 @@ class SelfQuery:
         data = self._geometry_data
         pin.computeDistances(self._model, self._data, self._geometry, data, q)
         return np.array([result.min_distance for result in data.distanceResults])
+
+    def distances_of(self, pairs: IntArray, q: Array) -> Array:
+        """Distances of some pairs.
+
+        Args:
+            pairs: (k,) numbers of the pairs.
+            q: (nq,) configuration.
+
+        Returns:
+            (k,) distances [m], negative in penetration.
+        """
+        self.count += 1
+        geometry, data = self._geometry, self._geometry_data
+        pin.updateGeometryPlacements(self._model, self._data, geometry, data, q)
+        found = [pin.computeDistance(geometry, data, pair).min_distance for pair in pairs.tolist()]
+        return np.array(found)
 
     def distance(self, q: Array) -> float:
         """Least distance over all pairs.

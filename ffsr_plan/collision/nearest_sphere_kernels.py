@@ -7,7 +7,7 @@ by the depth of penetration.
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ from ffsr_plan.scene.sphere_tree import SphereTree
 
 STACK_SIZE = 64
 """Entries of a stack for `nearest_sphere`: a tree of halves has fewer levels than that."""
+
+_NONE: Any = np.int64(-1)  # typed as other rows are: one signature to compile
 
 
 class Spheres(Protocol):
@@ -174,7 +176,9 @@ def nearest_pairs_from(
         last = which
         for step in range(len(kinds)):
             i = last - step if step <= last else step
-            distance, k = nearest_sphere(tree, kinds[i], placed[i], shift, best, -1, stack, bounds)
+            distance, k = nearest_sphere(
+                tree, kinds[i], placed[i], shift, best, _NONE, stack, bounds
+            )
             if k >= 0:
                 best, row, which = distance, k, i
         least[n], shape[n], sphere[n] = best, which, row

@@ -18,7 +18,7 @@ from ffsr_plan.problem.advice import against_obstacles, against_self_collision
 from ffsr_plan.problem.memory_estimate import check_lattice
 from ffsr_plan.problem.objective import nearness, objective, path_length
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.proof.interval_halving import Verdict, certify
+from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -100,13 +100,19 @@ class Roadmap:
         if key not in self._verdicts:
             ends = (self._clearance(layer, tail), self._clearance(layer + 1, head))
             offsets = self.lattice.offsets
-            edge = self.prover.obstacle_edge(layer, offsets[tail], offsets[head])
-            verdict = certify(edge, ends, self.prover.tolerance)
-            self._verdicts[key] = verdict
-            self.status[key] = FREE if verdict.free else REFUSED
-            if not verdict.free:
-                rule_out(self.status[layer], offsets, offsets, (tail, head), verdict)
+            (verdict,) = self.prover.certify_all(
+                np.array([layer]), offsets[[tail]], offsets[[head]], np.array([ends])
+            )
+            self._note(key, verdict)
         return self._verdicts[key]
+
+    def _note(self, edge: tuple[int, int, int], verdict: Verdict) -> None:
+        """Keep a verdict; a refusal may refuse other edges with it."""
+        self._verdicts[edge] = verdict
+        self.status[edge] = FREE if verdict.free else REFUSED
+        if not verdict.free:
+            offsets = self.lattice.offsets
+            rule_out(self.status[edge[0]], offsets, offsets, edge[1:], verdict)
 
     def free(self, layer: int, tail: int, head: int) -> bool:
         """Whether an edge is free, certifying it if its state is unknown.
@@ -129,8 +135,15 @@ class Roadmap:
             Whether all of them are free.
         """
         layers = np.arange(len(path) - 1)
-        for layer in np.flatnonzero(self.status[layers, path[:-1], path[1:]] == UNKNOWN).tolist():
-            self.certify(layer, int(path[layer]), int(path[layer + 1]))
+        open_ones = np.flatnonzero(self.status[layers, path[:-1], path[1:]] == UNKNOWN)
+        if len(open_ones):
+            clearances, offsets = self.path_clearances(path), self.lattice.offsets
+            tails, heads = path[open_ones], path[open_ones + 1]
+            ends = np.column_stack([clearances[open_ones], clearances[open_ones + 1]])
+            edges = zip(open_ones.tolist(), tails.tolist(), heads.tolist(), strict=True)
+            verdicts = self.prover.certify_all(open_ones, offsets[tails], offsets[heads], ends)
+            for edge, verdict in zip(edges, verdicts, strict=True):
+                self._note(edge, verdict)
         return bool(np.all(self.status[layers, path[:-1], path[1:]] == FREE))
 
     def is_proven(self, path: IntArray) -> bool:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+import numpy as np
+
 from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.kernels.compiling_time import Stopwatch
 from ffsr_plan.planning.plan_and_refine import plan
@@ -46,7 +49,12 @@ def warm_up(on_progress: Callable[[float], object] | None = None) -> int:
         if on_progress is not None:
             on_progress((done + 1) / len(cases))
     last = cases[-1][0]
-    ObstacleQuery(last.robot, last.scene).touching(last.start)  # for messages on contacts
+    query, placed = (
+        ObstacleQuery(last.robot, last.scene),
+        shape_placements(last.robot, last.start[None]),
+    )
+    query.touching(last.start)  # for messages on contacts
+    query.links_at(placed, 0, np.zeros(3))  # for edges that closed forms leave open
     return watch.kernels
 
 

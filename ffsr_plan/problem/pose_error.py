@@ -148,5 +148,5 @@ def _base_rotation_derivative(robot: SpaceRobot, begin: Array, change: Array) ->
     """D, (3, nd): rotation at the end of the path, in its base axes, per unit of joint change."""
     steps = change + _JOINT_STEP * np.vstack([np.zeros(robot.nd), np.eye(robot.nd)])
     begins = np.tile(begin, (len(steps), 1))
-    ends = Reaction(robot, begins, steps).increments
+    ends = Reaction(robot, begins, steps, inside=False).increments
     return log(multiply(inverse(ends[:1]), ends[1:])).T / _JOINT_STEP

@@ -7,15 +7,15 @@ the middle by at most A |t - middle|.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.proof.link_bounds import link_motion
-from ffsr_plan.proof.travel_bound import IntervalTravel, ObserverTravels, TravelBound
+from ffsr_plan.proof.travel_bound import IntervalTravel, TravelBound
 
 _STRAIGHTNESS = 0.03  # largest share of curvature in an interval's travel to bound its parts by it
-_ERROR_FACTOR = 10.0  # applied to the reaction's error, which is an estimate
 
 
 class EdgeTravel:
@@ -23,18 +23,39 @@ class EdgeTravel:
 
     Attributes:
         speeds: (m,) bound on the speed of any shape on each edge relative to the base origin [m].
-        speeds_in_base: (m,) bound on the speed of any shape in the base frame [m].
+        shapes: (g,) records of `SHAPE`.
+        points: (P,) records of `HULL_POINT`, whose hulls contain the shapes.
+        base: what the base does.
         attitude_error: length that an error of the attitude can add over any interval [m]; not
             part of `speeds`.
     """
 
     def __init__(self, motion: Motion) -> None:
-        self._motion = motion
-        self._bound, self._tree = TravelBound(motion.robot), motion.robot.tree
-        self._known: dict[tuple[float, float], tuple[ObserverTravels, Flags]] = {}
+        """Bounds along the edges of a motion.
+
+        Args:
+            motion: the motion, without offsets.
+        """
+        from ffsr_plan.proof.kernels.travel import BaseMotion
+
+        self._motion, self._bound = motion, TravelBound(motion.robot)
+        self.shapes, self.points = self._bound.shapes, self._bound.points
+        reacts = motion.mode.attitude_reacts
+        self.base = BaseMotion(
+            reacts,
+            motion.mode.floats,
+            (0.0, 0.0, 0.0) if reacts else tuple(np.asarray(motion.turn).tolist()),
+            float(motion.reaction.errors.sum()) if reacts else 0.0,
+        )
+        self._known: dict[tuple[float, float, bool], tuple[IntervalTravel, Flags]] = {}
         whole = self.over(0.0, 1.0)[0]
-        self.speeds, self.speeds_in_base = (_largest_speed(travel) for travel in whole)
-        self.attitude_error = float(np.max(whole.world.attitude_error, initial=0.0))
+        self.speeds = _largest_speed(whole)
+        self.attitude_error = float(np.max(whole.points.attitude_error, initial=0.0))
+
+    @cached_property
+    def speeds_in_base(self) -> Array:
+        """(m,) bound on the speed of any shape in the base frame [m]."""
+        return _largest_speed(self.over(0.0, 1.0, in_base=True)[0])
 
     def bounds(self, layer: int, begin: float, end: float, base_step: Array | None = None) -> Array:
         """Travel bound of each shape over a dyadic interval of an edge.
@@ -51,51 +72,47 @@ class EdgeTravel:
         Returns:
             (g,) bounds [m].
         """
-        low, high = 0.0, 1.0
-        travels, straight = self.over(low, high)
+        low, high, in_base = 0.0, 1.0, base_step is None
+        travel, straight = self.over(low, high, in_base)
         while end - begin < high - low and not straight[layer]:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if end <= middle else (middle, high)
-            travels, straight = self.over(low, high)
-        travel = travels.in_base if base_step is None else travels.world
+            travel, straight = self.over(low, high, in_base)
         step = np.zeros(3) if base_step is None else base_step
         if end - begin == high - low:
             return travel.bounds(layer, step)
         return travel.within(layer, end - begin, 0.5 * (begin + end - low - high), step)
 
-    def over(self, begin: float, end: float) -> tuple[ObserverTravels, Flags]:
+    def over(self, begin: float, end: float, in_base: bool = False) -> tuple[IntervalTravel, Flags]:
         """The bounds over one interval of every edge, computed once.
 
         Args:
             begin: start of the interval.
             end: end of the interval.
+            in_base: whether travel relative to the base is wanted, rather than in the world.
 
         Returns:
             The bounds, and (m,) whether the motion is straight enough to bound parts by them.
         """
-        if (begin, end) in self._known:
-            return self._known[begin, end]
+        if (begin, end, in_base) in self._known:
+            return self._known[begin, end, in_base]
         motion, m = self._motion, self._motion.edges
-        time = 0.5 * (begin + end)
-        quats = motion.attitudes_at((np.arange(m) + time) / m)
+        time, lengths = 0.5 * (begin + end), np.full(self._motion.edges, end - begin)
         rates = np.diff(motion.joint_values, axis=0)
-        joints = motion.joint_values[:-1] + time * rates
-        links = link_motion(self._tree, joints, rates, np.full(m, end - begin))
-        if motion.mode.attitude_reacts:
-            error = _ERROR_FACTOR * motion.reaction.error * len(motion.reaction.increments)
-            floats = motion.mode.floats
-            travels = self._bound.reacting(links, quats, error, floats)
+        values = motion.joint_values[:-1] + time * rates
+        if in_base:
+            travel = self._bound.in_base(values, rates, lengths)
         else:
-            angular_velocity = np.tile(motion.turn, (m, 1))
-            travels = self._bound.held(links, quats, angular_velocity)
-        largest = (end - begin) * np.max(travels.world.speed, axis=1, initial=0.0)
-        curvature = np.max(travels.world.curvature, axis=1, initial=0.0)
-        self._known[begin, end] = travels, curvature <= _STRAIGHTNESS * largest
-        return self._known[begin, end]
+            quats = motion.attitudes_at((np.arange(m) + time) / m)
+            travel = self._bound.in_world(values, rates, lengths, self.base, quats)
+        largest = lengths * np.max(travel.points.speed, axis=1, initial=0.0)
+        curvature = np.max(travel.points.curvature, axis=1, initial=0.0)
+        self._known[begin, end, in_base] = travel, curvature <= _STRAIGHTNESS * largest
+        return self._known[begin, end, in_base]
 
 
 def _largest_speed(whole: IntervalTravel) -> Array:
     """(m,) bound on the speed of any point over whole edges [m]."""
-    from_middle = np.linalg.norm(whole.velocity, axis=-1) + 2.0 * whole.curvature
-    largest: Array = np.max(np.minimum(from_middle, whole.speed), axis=1, initial=0.0)
+    from_middle = np.linalg.norm(whole.points.velocity, axis=-1) + 2.0 * whole.points.curvature
+    largest: Array = np.max(np.minimum(from_middle, whole.points.speed), axis=1, initial=0.0)
     return largest

@@ -7,7 +7,7 @@ import numpy as np
 from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 
@@ -121,7 +121,13 @@ class SelfCollisionEdge:
     """
 
     def __init__(
-        self, query: SelfQuery, motion: Motion, travel: EdgeTravel, layer: int, rounding: float
+        self,
+        query: SelfQuery,
+        motion: Motion,
+        travel: EdgeTravel,
+        layer: int,
+        pairs: IntArray,
+        rounding: float,
     ) -> None:
         """An edge of a motion.
 
@@ -130,28 +136,30 @@ class SelfCollisionEdge:
             motion: the motion.
             travel: travel bounds along it.
             layer: the edge.
+            pairs: (p,) numbers of the pairs that are its parts.
             rounding: length added to every travel bound [m].
         """
         self._query, self._motion, self._travel, self._layer = query, motion, travel, layer
+        self._pairs = pairs
         self._parts: dict[float, Array] = {}
         self.rounding = rounding
         self.speed = 2.0 * float(travel.speeds_in_base[layer])
 
     def clearance(self, time: float) -> float:
-        """Least distance of any pair [m]."""
-        return self._query.distance(joint_configuration(self._motion, self._layer, time))
+        """Least distance of any of the pairs [m]."""
+        return float(self.parts(time).min())
 
     def parts(self, time: float) -> Array:
         """(p,) distance of each pair [m]."""
         if time not in self._parts:
             q = joint_configuration(self._motion, self._layer, time)
-            self._parts[time] = self._query.distances(q)
+            self._parts[time] = self._query.distances_of(self._pairs, q)
         return self._parts[time]
 
     def travel(self, begin: float, end: float) -> Array:
         """(p,) sum of both travel bounds of each pair in the base frame [m]."""
         each = self._travel.bounds(self._layer, begin, end)
-        both: Array = each[self._query.pairs].sum(axis=1)
+        both: Array = each[self._query.pairs[self._pairs]].sum(axis=1)
         return both
 
 

@@ -6,16 +6,19 @@ those of lattice nodes during a search, any others during refinement.
 
 from __future__ import annotations
 
+from functools import cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_collision
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, IntArray, Records, records
 from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.proof.course import course_in_base, course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import (
@@ -29,7 +32,11 @@ from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
 
+if TYPE_CHECKING:
+    from ffsr_plan.proof.kernels.course import Course, Memory
+
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
+_EDGES_AT_ONCE = 64  # edges that are proven between two looks at the deadline
 _ITERATION_ERROR = 1e-7  # [m] for distances that Coal iterates to 1e-8
 _RELATIVE_ITERATION_ERROR = 4e-9  # for each metre between the centres of the two shapes
 
@@ -68,7 +75,8 @@ class Prover:
         self._corners = shape_placements(nominal.robot, nominal.configurations())
         self.speeds = self._travel.speeds
         self.rounding = ROUNDING + self._travel.attitude_error
-        if not nominal.robot.primitives.exact.all():
+        self._exact = bool(nominal.robot.primitives.exact.all())
+        if not self._exact:
             largest = float(np.max(scene.radii, initial=0.0))
             self.rounding += _ITERATION_ERROR + _RELATIVE_ITERATION_ERROR * largest
 
@@ -90,7 +98,7 @@ class Prover:
         return self._obstacles.distances_at(self._corners, layers, offsets)
 
     def half_way(self, layers: IntArray, offsets: Array) -> Array:
-        """Clearances half-way on edges of the displaced motion.
+        """Clearances half-way on edges of the displaced motion, in closed form for a search.
 
         Args:
             layers: (k,) edges.
@@ -99,7 +107,7 @@ class Prover:
         Returns:
             (k,) distances to the nearest obstacle [m].
         """
-        return self._obstacles.distances_at(self._placements.between(2), layers, offsets)
+        return self._obstacles.closed_at(self._placements.between(2), layers, offsets)
 
     def sampled_edges(
         self, layers: IntArray, tails: Array, heads: Array, ends: Array
@@ -162,7 +170,69 @@ class Prover:
             head: (3,) offset at its end [m].
             ends: clearances at both ends [m].
         """
-        return certify(self.obstacle_edge(layer, tail, head), ends, self.tolerance)
+        edge = np.array([layer]), tail[None], head[None], np.array([ends])
+        (verdict,) = self.certify_all(*edge)
+        return verdict
+
+    def certify_all(
+        self, layers: IntArray, tails: Array, heads: Array, ends: Array
+    ) -> list[Verdict]:
+        """Prove of many edges that they are free of obstacles, or refuse them.
+
+        Distances in closed form decide where they do so by far more than their error; a refusal is
+        confirmed by Coal, and what they leave open is decided on Coal's distances alone.
+
+        Args:
+            layers: (k,) the edges.
+            tails: (k, 3) offsets at their starts [m].
+            heads: (k, 3) offsets at their ends [m].
+            ends: (k, 2) clearances at their starts and ends [m].
+        """
+        if self._course is None:
+            return [Verdict(True, np.inf, 0.0, 0)] * len(layers)
+        if not len(layers):
+            return []
+        from ffsr_plan.proof.kernels import edge_proof
+
+        edges, course = records(edge_proof.EDGE, len(layers)), self._course
+        edges.layer, edges.tail, edges.head, edges.ends = layers, tails, heads, ends
+        halving = edge_proof.intervals_for(course)
+        for first in range(0, len(layers), _EDGES_AT_ONCE):
+            self._deadline.check()
+            some = cast("Records", edges[first : first + _EDGES_AT_ONCE])
+            edge_proof.prove(
+                course, self.speeds, some, self.rounding, self.tolerance, self._memory, halving
+            )
+        verdicts, columns = [], (edges.state, edges.least, edges.time, edges.count)
+        for k, (state, least, time, count) in enumerate(
+            zip(*(column.tolist() for column in columns), strict=True)
+        ):
+            if state == edge_proof.PROVEN:
+                verdicts.append(Verdict(True, least, time, count))
+                continue
+            edge = self.obstacle_edge(int(layers[k]), tails[k], heads[k])
+            touched = (
+                edge.clearance(time) if state == edge_proof.TOUCHED and self._exact else np.inf
+            )
+            if touched <= 0.0:
+                verdicts.append(Verdict(False, touched, time, count))
+            else:
+                verdicts.append(certify(edge, (ends[k, 0], ends[k, 1]), self.tolerance))
+        return verdicts
+
+    @cached_property
+    def _course(self) -> Course | None:
+        """The motion among the obstacles for kernels; None where there are none."""
+        if self._obstacles.empty:
+            return None
+        return course_of(self._motion, self._scene, self._travel)
+
+    @cached_property
+    def _memory(self) -> Memory:
+        from ffsr_plan.proof.kernels.course import memory_for
+
+        assert self._course is not None
+        return memory_for(self._course)
 
     def least_clearance(self, offsets: Array, clearances: Array) -> float:
         """Proven lower bound on the clearance all along a path whose edges are free.
@@ -173,13 +243,25 @@ class Prover:
 
         Returns:
             The bound [m].
+
+        Raises:
+            OutOfTime: at the deadline.
         """
+        self._deadline.check()
+        if self._course is not None and self._exact:
+            from ffsr_plan.proof.kernels.path_clearance import parts_for, path_clearance
+
+            found = path_clearance(
+                self._course, self.speeds, np.array(offsets), np.array(clearances), self.rounding,
+                _BOUND_PRECISION, self._memory, parts_for(self._course),
+            )  # fmt: skip
+            return max(float(found), 0.0)  # not negative, because the edges have been proven free
         bound = least = float(np.min(clearances))
         for layer, ends in enumerate(pairwise(map(float, clearances))):
             edge = self.obstacle_edge(layer, offsets[layer], offsets[layer + 1])
             edge_bound, least = clearance_bound(edge, ends, least, _BOUND_PRECISION)
             bound = min(bound, edge_bound)
-        return max(bound, 0.0)  # not negative, because the edges have been proven free
+        return max(bound, 0.0)
 
     def nearest(self, layer: int, tail: Array, head: Array, time: float) -> Nearest:
         """The nearest link and obstacle at a time on an edge.
@@ -232,18 +314,23 @@ class Prover:
                 raise NoPath(layer + 1, links, self._motion.edges, contacts, advice)
 
     def self_verdicts(self) -> list[Verdict]:
-        """(m,) for each edge, whether links that must not touch are proven apart."""
-        motion = self._motion
+        """(m,) for each edge, whether links that must not touch are proven apart.
+
+        Lower bounds decide for the pairs that are far apart; Coal measures the others.
+        """
+        motion, rounding = self._motion, ROUNDING + _ITERATION_ERROR
+        verdicts = [Verdict(True, np.inf, 0.0, 0)] * motion.edges
         if self._self.empty:
-            return [Verdict(True, np.inf, 0.0, 0)] * motion.edges
-        rounding = ROUNDING + _ITERATION_ERROR
-        edges = [
-            SelfCollisionEdge(self._self, motion, self._travel, layer, rounding)
-            for layer in range(motion.edges)
-        ]
-        starts = [edge.clearance(0.0) for edge in edges]
-        starts.append(edges[-1].clearance(1.0))
-        return [
-            certify(edge, ends, self.tolerance)
-            for edge, ends in zip(edges, pairwise(starts), strict=True)
-        ]
+            return verdicts
+        from ffsr_plan.proof.kernels.apart import known_for, prove_apart
+        from ffsr_plan.proof.kernels.course import memory_for
+
+        course, pairs = course_in_base(motion, self._travel), self._self.pairs
+        proven, memory = np.zeros((motion.edges, len(pairs)), dtype=np.bool_), memory_for(course)
+        prove_apart(course, pairs, rounding, memory, known_for(course), proven)
+        for layer in np.flatnonzero(~proven.all(axis=1)).tolist():
+            open_pairs = np.flatnonzero(~proven[layer])
+            edge = SelfCollisionEdge(self._self, motion, self._travel, layer, open_pairs, rounding)
+            ends = edge.clearance(0.0), edge.clearance(1.0)
+            verdicts[layer] = certify(edge, ends, self.tolerance)
+        return verdicts

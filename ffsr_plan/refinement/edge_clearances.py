@@ -8,7 +8,7 @@ from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.problem.objective import motion_objective, path_length
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.proof.interval_halving import Verdict, certify
+from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.offset_band import OffsetBand
 
@@ -39,12 +39,13 @@ class EdgeClearances:
         sampled: list[Verdict | None] = [None] * len(unknown)
         if self._problem.delta > 0.0:
             sampled = list(prover.sampled_edges(unknown, tails, heads, ends))
-        for k, layer in enumerate(unknown.tolist()):
-            verdict = sampled[k]
-            if verdict is None or _undecided(verdict, prover.tolerance):
-                edge = prover.obstacle_edge(layer, tails[k], heads[k])
-                proof = certify(edge, (float(ends[k, 0]), float(ends[k, 1])), prover.tolerance)
-                verdict = proof if verdict is None else _closer(proof, verdict)
+        left = [k for k, each in enumerate(sampled) if _undecided(each, prover.tolerance)]
+        proofs = prover.certify_all(unknown[left], tails[left], heads[left], ends[left])
+        for k, proof in zip(left, proofs, strict=True):
+            before = sampled[k]
+            sampled[k] = proof if before is None else _closer(proof, before)
+        for layer, verdict in zip(unknown.tolist(), sampled, strict=True):
+            assert verdict is not None
             self._verdicts[keys[layer]] = verdict
         return [self._verdicts[key] for key in keys]
 
@@ -94,9 +95,9 @@ def proven_clearances(verdicts: list[Verdict]) -> Array:
     return np.array([each.least_clearance if each.free else 0.0 for each in verdicts])
 
 
-def _undecided(verdict: Verdict, tolerance: float) -> bool:
+def _undecided(verdict: Verdict | None, tolerance: float) -> bool:
     """Whether samples neither prove an edge free nor come within the tolerance."""
-    return not verdict.free and verdict.least_clearance > tolerance
+    return verdict is None or (not verdict.free and verdict.least_clearance > tolerance)
 
 
 def _closer(proof: Verdict, sampled: Verdict) -> Verdict:

@@ -19,7 +19,15 @@ from typing import Any, NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from ffsr_plan.core.arrays import Array, Flags, IntArray, equal_by_content
+from ffsr_plan.core.arrays import (
+    Array,
+    Flags,
+    IntArray,
+    Records,
+    equal_by_content,
+    frozen,
+    records,
+)
 from ffsr_plan.core.errors import unknown_name
 from ffsr_plan.core.rotations import cross
 
@@ -46,6 +54,43 @@ class Velocities(NamedTuple):
 
     angular: Array
     linear: Array
+
+
+BODY = np.dtype(
+    [
+        ("parent", np.int64),
+        ("prismatic", np.bool_),
+        ("fixed", np.float64, (3, 3)),
+        ("sine", np.float64, (3, 3)),
+        ("versine", np.float64, (3, 3)),
+        ("offset", np.float64, 3),
+        ("slide", np.float64, 3),
+        ("axis", np.float64, 3),
+        ("mass", np.float64),
+        ("lever", np.float64, 3),
+        ("inertia", np.float64, (3, 3)),
+        ("moments", np.float64, 2),
+    ],
+    align=True,
+)
+"""A link of a robot for compiled kernels; the base is link 0, its own parent.
+
+A link's rotation relative to its parent is fixed + sin(q) sine + (1 - cos(q)) versine, its origin
+in the parent's frame offset + q slide.
+
+    parent      of the link
+    prismatic   whether the joint above the link is
+    fixed       (3, 3) rotation at joint value zero
+    sine        (3, 3), zero for prismatic joints
+    versine     (3, 3), zero for prismatic joints
+    offset      (3,) [m]
+    slide       (3,), zero for revolute joints
+    axis        (3,) joint axis in the link's frame, zero for the base
+    mass        [kg]
+    lever       (3,) centre of mass in the link's frame [m]
+    inertia     (3, 3) about the centre of mass, link axes [kg m^2]
+    moments     (2,) least and largest principal moment [kg m^2]
+"""
 
 
 class Tree:
@@ -84,6 +129,23 @@ class Tree:
         self._fixed, self._sine = rotations, rotations @ skew
         self._versine = rotations @ skew @ skew
         self._slide = np.einsum("nij,nj->ni", rotations, self._prismatic_axes)
+
+    def bodies(self, model: pin.Model) -> Records:
+        """(n,) the links as records of `BODY`.
+
+        Args:
+            model: the model that the tree was made from.
+        """
+        inertias = list(model.inertias)[1:]
+        bodies = records(BODY, len(inertias))
+        bodies.parent, bodies.prismatic, bodies.axis = self.parents, self.prismatic, self.axes
+        bodies.fixed, bodies.sine, bodies.versine = self._fixed, self._sine, self._versine
+        bodies.offset, bodies.slide = self._offsets, self._slide
+        bodies.mass = [body.mass for body in inertias]
+        bodies.lever = [body.lever for body in inertias]
+        bodies.inertia = [body.inertia for body in inertias]
+        bodies.moments = np.maximum(np.linalg.eigvalsh(bodies.inertia), 0.0)[:, [0, 2]]
+        return frozen(bodies)
 
     def offsets(self, joint_values: Array) -> Array:
         """Origins of the links in their parents' frames.

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, frozen
+from ffsr_plan.core.arrays import Array, ReadOnlyDict, Records, content, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, normalised, number, unit_quaternion
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput, unknown_name
@@ -163,6 +163,11 @@ class SpaceRobot:
     def tree(self) -> Tree:
         """The kinematic tree, which computes poses of many configurations at once."""
         return Tree(self.model)
+
+    @cached_property
+    def bodies(self) -> Records:
+        """The links and their masses as arrays for compiled kernels."""
+        return self.tree.bodies(self.model)
 
     @cached_property
     def primitives(self) -> Primitives:

@@ -1,4 +1,4 @@
-"""The reaction of joint segments: closed forms, laws and orders of convergence."""
+"""The reaction of joint segments: closed forms and laws."""
 
 import numpy as np
 import pytest
@@ -26,20 +26,6 @@ def by_many_small_steps(robot, begin, end, steps):
     for rate in connections(robot, theta) @ (end - begin):
         rotation = rotations.multiply(rotation, rotations.exp(rate / steps))
     return rotation
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_halving_the_step_converges_at_sixth_order(seed):
-    robot = random_robot(seed, depth=3)
-    begin, end = path(robot, seed, spread=1.2)
-    exact = Reaction.along(robot, np.array([begin, end])).increments[0]
-    errors = []
-    for substeps in (4, 8, 16):
-        rough = Reaction(robot, begin[None], (end - begin)[None], substeps)
-        errors.append(rotations.angle_between(rough.increments[0], exact))
-    orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert errors[0] < 1e-5
-    assert np.all((orders > 5.0) | (np.array(errors[1:]) < 1e-11))
 
 
 def path(robot, seed, corners=2, spread=1.5):
@@ -83,13 +69,13 @@ def test_the_integrator_converges_to_many_small_steps(seed):
 @given(seeds)
 @settings(max_examples=25)
 def test_its_error_stays_below_1e_9_rad(seed):
-    """One long segment is compared with a hundred short ones, and with its own estimate."""
+    """One long segment is compared with a hundred short ones, and with its own bound."""
     robot = random_robot(seed)
     begin, end = path(robot, seed)
     whole = Reaction.along(robot, np.array([begin, end]))
     pieces = total(robot, np.linspace(begin, end, 101))
     assert rotations.angle_between(whole.increments[0], pieces) < 1e-9
-    assert whole.error < 1e-10
+    assert whole.errors[0] < 1e-10
 
 
 @given(seeds)

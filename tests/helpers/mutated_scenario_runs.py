@@ -81,7 +81,7 @@ def run(text, path):
     signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
     begin = time.process_time()
     try:
-        options = ["--no-verify", "--no-refine", "--time-limit", "0.2"]
+        options = ["--no-verify", "--no-refine", "--time-limit", "0.5"]
         result = CliRunner().invoke(app, ["plan", str(path), *options], catch_exceptions=True)
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)

@@ -13,7 +13,7 @@ import pinocchio as pin
 
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
-from ffsr_plan.proof.link_bounds import link_motion
+from ffsr_plan.proof.kernels.travel import BaseMotion
 from ffsr_plan.proof.travel_bound import TravelBound
 from tests.helpers.random_robots import Limb, Z, at, body, random_tree
 
@@ -44,18 +44,15 @@ class SampledEdge(NamedTuple):
 
     def travel(self, middles, lengths, error=0.0):
         bound, rates = TravelBound(self.robot), np.tile(self.step, (len(middles), 1))
-        links = link_motion(self.robot.tree, self.joints(middles), rates, lengths)
-        attitudes = self.attitudes(middles)
-        if self.turn is None:
-            return bound.reacting(links, attitudes, error).world
-        return bound.held(links, attitudes, np.tile(self.turn, (len(middles), 1))).world
+        base = BaseMotion(True, False, (0.0, 0.0, 0.0), error)
+        if self.turn is not None:
+            base = BaseMotion(False, False, tuple(self.turn), 0.0)
+        return bound.in_world(self.joints(middles), rates, lengths, base, self.attitudes(middles))
 
     def in_base(self, middles, lengths):
         rates = np.tile(self.step, (len(middles), 1))
-        bound = TravelBound(self.robot)
-        links = link_motion(self.robot.tree, self.joints(middles), rates, lengths)
-        travels = bound.reacting(links, self.attitudes(middles), 0.0)
-        return travels.in_base.bounds(np.arange(len(middles)), np.zeros((len(middles), 3)))
+        travel = TravelBound(self.robot).in_base(self.joints(middles), rates, lengths)
+        return travel.bounds(np.arange(len(middles)), np.zeros((len(middles), 3)))
 
     def places(self, middle, length, in_base=False):
         """Points of each shape, [(SAMPLES + 1, n, 3)], about the base origin."""
@@ -108,16 +105,16 @@ def case(seed, held):
 
 def base_steps(rng, travel):
     """Base steps, random or such that a point hardly moves and only its curvature remains."""
-    count, points = travel.speed.shape
+    count, points = travel.points.speed.shape
     steps = rng.normal(size=(count, 3)) * rng.uniform(0, 0.5, (count, 1))
-    against = -travel.velocity[np.arange(count), rng.integers(points, size=count)]
+    against = -travel.points.velocity[np.arange(count), rng.integers(points, size=count)]
     return np.where(rng.random((count, 1)) < 0.5, steps, against)
 
 
 def tightness(way, base_step=None, length=1.0, middle=0.5):
     """(g,) sampled travel / T of each shape; by default the base step stops the last point."""
     travel = way.travel(np.array([middle]), np.array([length]))
-    step = -travel.velocity[0, -1] if base_step is None else base_step
+    step = -travel.points.velocity[0, -1] if base_step is None else base_step
     bound = travel.bounds(0, step)
     sampled = lengths_of(way.places(middle, length), step, length)
     assert np.all(sampled <= bound + ROUNDING)

@@ -138,7 +138,9 @@ def test_a_slider_is_fastest_at_its_largest_offset():
     way = SampledEdge(made, np.array([0.0, -1.0]), np.array([2.0, 2.0]), turn=STILL)
     travel = way.travel(np.array([0.5]), np.ones(1))
     speeds = np.linalg.norm(np.diff(way.places(0.5, 1.0)[0], axis=0), axis=2) * SAMPLES
-    assert 1.3 * np.linalg.norm(travel.velocity) < np.max(speeds) <= np.max(travel.speed)
+    assert (
+        1.3 * np.linalg.norm(travel.points.velocity) < np.max(speeds) <= np.max(travel.points.speed)
+    )
 
 
 def test_sliding_along_a_rotation_axis_adds_no_curvature():
@@ -160,4 +162,6 @@ def test_a_base_gets_faster_when_masses_are_drawn_in():
     way = SampledEdge(made, np.array([1.0, 1.0, 1.0, 0.0]), np.array([-0.9, -0.9, -0.9, 1.0]))
     travel = way.travel(np.array([0.5]), np.ones(1))
     speeds = np.linalg.norm(np.diff(way.places(0.5, 1.0)[0], axis=0), axis=2) * SAMPLES
-    assert 5.0 * np.linalg.norm(travel.velocity) < np.max(speeds) <= np.max(travel.speed)
+    assert (
+        5.0 * np.linalg.norm(travel.points.velocity) < np.max(speeds) <= np.max(travel.points.speed)
+    )

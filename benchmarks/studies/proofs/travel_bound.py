@@ -20,8 +20,8 @@ import ffsr_plan as fp
 from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, table
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
-from ffsr_plan.proof.link_bounds import link_motion
-from ffsr_plan.proof.travel_bound import TravelBound
+from ffsr_plan.proof.kernels.travel import BaseMotion
+from ffsr_plan.proof.travel_bound import IntervalTravel, TravelBound
 from ffsr_plan.robots.kinematics import Tree, turned
 from tests.helpers.random_robots import random_tree
 
@@ -70,7 +70,6 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
     about = relative_places(robot, begin[every] + times.reshape(-1, 1) * steps[every])
     bound = TravelBound(robot)
     now, rates = begin[edge] + middles[:, None] * steps[edge], steps[edge]
-    links = link_motion(robot.tree, now, rates, lengths)
     base = rng.normal(size=(len(edge), 3))
     base *= BASE_STEP / np.linalg.norm(base, axis=1, keepdims=True)
     which = np.broadcast_to(np.arange(len(BASES)), shape).ravel()
@@ -81,15 +80,16 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
         if mode == "free-flying":
             quats = reaction.rotation(every, times.ravel())
             at_middle = reaction.rotation(edge, middles)
-            travel = bound.reacting(links, at_middle, 0.0).world
+            moved = BaseMotion(True, False, (0.0, 0.0, 0.0), 0.0)
+            travel = bound.in_world(now, rates, lengths, moved, at_middle)
             omega = None
         else:
             quats = rotations.exp(times.reshape(-1, 1) * turns[every])
             at_middle = rotations.exp(middles[:, None] * turns[edge])
-            travel = bound.held(links, at_middle, turns[edge]).world
+            travel = held_travel(bound, (now, rates, lengths, at_middle), turns)
             omega = np.linalg.norm(turns, axis=1)
-        points = rng.integers(travel.speed.shape[1], size=len(edge))
-        follows = -travel.velocity[np.arange(len(edge)), points]
+        points = rng.integers(travel.points.speed.shape[1], size=len(edge))
+        follows = -travel.points.velocity[np.arange(len(edge)), points]
         moves = np.where(which[:, None] == 2, follows, base)
         places = about @ np.swapaxes(rotations.matrix(quats), -1, -2)
         places = places.reshape(*times.shape, -1, 3)
@@ -102,11 +102,26 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
         yield Found(scales, *(x.reshape(*shape, -1) for x in (sampled, bounds, simple)))
 
 
+def held_travel(
+    bound: TravelBound, intervals: "tuple[np.ndarray, ...]", turns: np.ndarray
+) -> IntervalTravel:
+    """The bound for a base that turns; as many intervals in a row for each of the turns (e, 3)."""
+    parts = [np.split(array, len(turns)) for array in intervals]
+    travels = [
+        bound.in_world(*each[:3], BaseMotion(False, False, tuple(turn), 0.0), each[3])
+        for turn, each in zip(turns, zip(*parts, strict=True), strict=True)
+    ]
+    points = np.concatenate([each.points for each in travels]).view(np.recarray)
+    return IntervalTravel(
+        points, np.concatenate([each.lengths for each in travels]), travels[0].first
+    )
+
+
 def relative_places(robot: fp.SpaceRobot, joint_values: np.ndarray) -> np.ndarray:
     """(N, P, 3) points of all shapes relative to the base; `Tree` is tested against Pinocchio."""
-    poses, bound = Tree(robot.model).poses(joint_values), TravelBound(robot)
-    links, points = bound.links, bound.points
-    return poses.origins[:, links] + turned(poses.rotations[:, links], points)
+    poses, points = Tree(robot.model).poses(joint_values), TravelBound(robot).points
+    links = points.link
+    return poses.origins[:, links] + turned(poses.rotations[:, links], points.place)
 
 
 def simple_speeds(
@@ -132,10 +147,10 @@ def simple_speeds(
             inertia += least
         omega = np.sqrt(energy / inertia)
     bound = TravelBound(robot)
-    reach = np.linalg.norm(bound.points, axis=1)
-    speeds = omega[:, None] * (distance[:, bound.links] + reach)
-    speeds += linear[:, bound.links] + angular[:, bound.links] * reach
-    return np.maximum.reduceat(speeds, bound.first, axis=-1)
+    links, reach = bound.points.link, np.linalg.norm(bound.points.place, axis=1)
+    speeds = omega[:, None] * (distance[:, links] + reach)
+    speeds += linear[:, links] + angular[:, links] * reach
+    return np.maximum.reduceat(speeds, bound.shapes.first, axis=-1)
 
 
 class Ratios:

@@ -47,14 +47,29 @@ class Kernel:
         with loading():
             from numba import njit
 
-            inline = self.targetoptions["inline"]
-            dispatcher = njit(nogil=True, inline=inline)(self.py_func)
+            options: dict[str, Any] = {"no_cfunc_wrapper": True}
+            dispatcher = njit(nogil=True, **options)(self.py_func)
             _listen_once(keep_on_disk(dispatcher))
         return dispatcher
 
+    @cached_property
+    def inner_dispatcher(self) -> Any:  # noqa: ANN401 - its type depends on numba's version
+        """The numba dispatcher for calls by kernels, made at the first use.
+
+        It makes no function that Python could call, which takes longer to compile than the kernel
+        itself where arguments hold many arrays. Its machine code becomes part of the caller's.
+        """
+        from numba import njit
+
+        options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        return njit(nogil=True, **options | self.targetoptions)(self.py_func)
+
     @property
     def _numba_type_(self) -> object:
-        return self.dispatcher._numba_type_
+        own = vars(self).get("dispatcher")
+        if own is not None and own.is_compiling:  # it calls itself
+            return own._numba_type_
+        return self.inner_dispatcher._numba_type_
 
     def __call__(self, *arguments: object) -> Any:  # noqa: ANN401, D102 - as the function
         return self.dispatcher(*arguments)

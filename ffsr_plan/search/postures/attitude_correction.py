@@ -106,8 +106,8 @@ def attitude_slopes(robot: SpaceRobot, path: Array, directions: Array, increment
     corners = np.repeat(np.arange(1, m), axes)
     moved = path[1:-1, None] + _DIFFERENCE * directions[1:-1]
     moved = moved.reshape(-1, path.shape[1])
-    before = Reaction(robot, path[corners - 1], moved - path[corners - 1]).increments
-    behind = Reaction(robot, moved, path[corners + 1] - moved).increments
+    before = Reaction(robot, path[corners - 1], moved - path[corners - 1], inside=False).increments
+    behind = Reaction(robot, moved, path[corners + 1] - moved, inside=False).increments
     rest = [rotations.IDENTITY]  # from corner k + 1 to the end, backwards
     for increment in increments[:0:-1]:
         rest.append(rotations.multiply(increment, rest[-1]))

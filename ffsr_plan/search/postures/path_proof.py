@@ -96,10 +96,10 @@ def prove_path(lattice: PostureLattice, positions: Array, joints: Array) -> Path
     m = len(positions) - 1
     still = np.zeros(3)
     clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
+    ends, none = np.column_stack([clearances[:-1], clearances[1:]]), np.zeros((m, 3))
+    verdicts = prover.certify_all(np.arange(m), none, none, ends)
     refused = []
-    for layer, links in enumerate(prover.self_verdicts()):
-        ends = float(clearances[layer]), float(clearances[layer + 1])
-        verdict = prover.certify(layer, still, still, ends)
+    for layer, (verdict, links) in enumerate(zip(verdicts, prover.self_verdicts(), strict=True)):
         if not verdict.free:
             near = prover.nearest(layer, still, still, verdict.time)
         elif not links.free:

@@ -31,9 +31,12 @@ _BYTES_PER_PHEROMONE = 8  # of a joint step on a layer
 _BYTES_PER_SHAPE = 120  # placement of a shape at a node
 _BYTES_PER_PLACED_SHAPE = 450  # while the shapes at the nodes of one layer are placed
 _BYTES_PER_OFFSET_EDGE = 30  # pheromone, ants and what they lay
-_STEPS_AT_ONCE = 1024  # joint steps whose reaction is integrated together, to limit memory
-_JOINT_STEP = 0.1  # [rad or m] for which the base reaction is worked out at eight points
-_SECONDS_PER_POINT = 1e-5  # for each joint, base reaction at one point
+_TOLERANCE = 1e-8  # [rad] of the reaction to a joint step; what is returned is integrated anew
+_STEPS_AT_ONCE = 256  # joint steps whose reaction is integrated between two looks at the clock
+_JOINT_STEP = 0.15  # [rad or m] that one substep of the base reaction suffices for
+_POINTS = 13  # of a substep
+_BYTES_PER_SUBSTEP = 150
+_SECONDS_PER_POINT = 2e-7  # for each joint, base reaction at one point
 _SECONDS_PER_PAIR = 4e-6  # distance of two links
 
 
@@ -121,14 +124,15 @@ class PostureLattice:
             exists &= np.arange(k) > k // 2
         chosen = np.flatnonzero(exists)
         words = f"the base's reaction to {len(chosen)} joint steps, before the search"
-        parts = -(-len(chosen) // _STEPS_AT_ONCE)
         with notify_after(5.0, words):
-            for part in range(parts):  # from all over the lattice: all need about as many substeps
+            for first in range(0, len(chosen), _STEPS_AT_ONCE):
                 self.deadline.check()
-                i, p, step = np.unravel_index(chosen[part::parts], exists.shape)
+                some = chosen[first : first + _STEPS_AT_ONCE]
+                i, p, step = np.unravel_index(some, exists.shape)
                 begin, on = self.joint_values[i, p], self.successors[p, step]
                 steps = self.joint_values[i + 1, on] - begin
-                turned = Reaction(self.problem.robot, begin, steps).increments
+                reaction = Reaction(self.problem.robot, begin, steps, _TOLERANCE, inside=False)
+                turned = reaction.increments
                 result[i, p, step] = turned
                 if self.alike:
                     result[i, on, k - 1 - step] = rotations.inverse(turned)
@@ -196,7 +200,7 @@ def _check_size(problem: Problem) -> None:
     offsets = math.prod(2 * getattr(settings, name).half_count + 1 for name in settings.axes)
     around = 3 ** len(settings.postures)
     reacts = problem.mode.attitude_reacts and robot.nd > 0
-    points = 8 * math.ceil(_largest_step(problem) / _JOINT_STEP) if reacts else 0
+    substeps = math.ceil(_largest_step(problem) / _JOINT_STEP) if reacts else 0
     moves = bool(np.any(problem.joint_displacement))  # otherwise one layer speaks for all
     advice = "fewer divisions, fewer posture axes, or a smaller half_count or number of levels"
     counts = {"layers": layers, "postures": postures, "steps from a posture": around}
@@ -206,9 +210,9 @@ def _check_size(problem: Problem) -> None:
     fixed = _BYTES_PER_OFFSET_EDGE * layers * offsets**2
     fixed += postures * (_BYTES_PER_PLACED_SHAPE * shapes + 24 * around * (1 + robot.nd))
     at_once = min(_STEPS_AT_ONCE, share * layers * postures * around)
-    fixed += 32 * (3 + robot.nd) * points * at_once
+    fixed += (24 * robot.nd + _BYTES_PER_SUBSTEP * substeps) * at_once
     check_memory("lattice postures", counts, each, advice, fixed)
-    counts = counts | {"points": points} if moves else {**counts, "layers": 1, "points": points}
+    counts |= {"layers": layers if moves else 1, "points": _POINTS * substeps}
     check_work("lattice postures", counts, _SECONDS_PER_POINT * max(robot.nd, 1), advice)
     counts = {"layers": layers if moves else 1, "postures": postures}
     counts["pairs of links"] = len(robot.collision_model.collisionPairs)

@@ -45,32 +45,32 @@ def sphere_distances(
         the distance is a lower bound, which is negative.
     """
     result = np.full(len(asked), np.inf)
-    local, between = np.empty((1, 3)), np.empty(3)
+    local, between, middle = np.empty((1, 3)), np.empty(3), np.empty(3)
     for q in range(len(asked)):
         n, s = asked[q]
         begin, end = ranges[q]
         corners = solids.corners[solids.starts[s] : solids.starts[s + 1]]
+        _out_of_solid(solids.middles[s], base_turns[n], turns[n, s], places[n, s], middle)
+        for i in range(3):
+            middle[i] += base_places[n, i]
         nearest, least = -1, np.inf
-        for first in range(2):  # the sphere that seems nearest first, then all that may be nearer
-            for k in range(begin, end):
-                sphere = near[k]
-                for i in range(3):
-                    between[i] = centers[sphere, i] - base_places[n, i]
-                _into_solid(between, base_turns[n], turns[n, s], places[n, s], local[0])
-                bound = -solids.radii[s] - radii[sphere]
-                bound += _apart(local[0], solids.middles[s])
-                if first == 0:
-                    if bound < least:
-                        nearest, least = k, bound
-                    continue
-                if bound >= result[q] and k != nearest:
-                    continue
-                taken = solids.swells[s] + radii[sphere]
-                distance = _from_solid(local, corners, solids.halves[s], result[q] + taken)
-                result[q] = min(result[q], distance - taken)
-            if first == 0 and nearest >= 0:  # bring it to the front
-                near[begin], near[nearest] = near[nearest], near[begin]
-                nearest = begin
+        for k in range(begin, end):  # the sphere that seems nearest is measured first
+            bound = _apart(centers[near[k]], middle) - radii[near[k]]
+            if bound < least:
+                nearest, least = k, bound
+        if nearest >= 0:
+            near[begin], near[nearest] = near[nearest], near[begin]
+        for k in range(begin, end):
+            sphere = near[k]
+            bound = _apart(centers[sphere], middle) - radii[sphere] - solids.radii[s]
+            if bound >= result[q] and k != begin:
+                continue
+            for i in range(3):
+                between[i] = centers[sphere, i] - base_places[n, i]
+            _into_solid(between, base_turns[n], turns[n, s], places[n, s], local[0])
+            taken = solids.swells[s] + radii[sphere]
+            distance = _from_solid(local, corners, solids.halves[s], result[q] + taken)
+            result[q] = min(result[q], distance - taken)
     return result
 
 
@@ -185,6 +185,19 @@ def _into_solid(point: Array, base: Array, turn: Array, place: Array, local: Arr
     z = base[0, 2] * point[0] + base[1, 2] * point[1] + base[2, 2] * point[2] - place[2]
     for i in range(3):
         local[i] = turn[0, i] * x + turn[1, i] * y + turn[2, i] * z
+
+
+@kernel
+def _out_of_solid(local: Array, base: Array, turn: Array, place: Array, point: Array) -> None:
+    """Put a point in the frame of a solid into world axes, from the base origin."""
+    for i in range(3):
+        point[i] = 0.0
+    for k in range(3):
+        along = place[k]
+        for i in range(3):
+            along += turn[k, i] * local[i]
+        for i in range(3):
+            point[i] += base[i, k] * along
 
 
 @kernel

@@ -1,0 +1,83 @@
+"""A motion among obstacles as arrays for the compiled proof."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ffsr_plan.core.rotations import IDENTITY, rotate
+from ffsr_plan.dynamics.momentum import centers_of_mass
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.dynamics.reaction import Reaction
+from ffsr_plan.proof.edge_travel import EdgeTravel
+from ffsr_plan.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from ffsr_plan.proof.kernels.course import Course
+
+
+def course_of(motion: Motion, scene: Scene, travel: EdgeTravel) -> Course:
+    """The arrays of a motion.
+
+    Args:
+        motion: the motion that offsets are counted from.
+        scene: at least one obstacle.
+        travel: travel bounds along the motion.
+    """
+    from ffsr_plan.proof.kernels.course import Course
+
+    robot, reacts = motion.robot, motion.mode.attitude_reacts
+    whole, straight = travel.over(0.0, 1.0)
+    positions = motion.positions
+    if motion.mode.floats:
+        center = centers_of_mass(robot, motion.joint_values[:1])[0]
+        center = motion.positions[0] + rotate(motion.attitudes[0], center)
+        positions = np.tile(center, (len(positions), 1))
+    reaction = motion.reaction if reacts else _still(motion)
+    each = reacts and not motion.joints_are_straight
+    return Course(
+        robot.bodies,
+        travel.shapes,
+        travel.points,
+        scene.tree,
+        travel.base,
+        np.array(motion.attitudes[: motion.edges if each else 1]),
+        reaction.partial,
+        np.array(positions),
+        np.array(motion.joint_values),
+        whole.points,
+        straight,
+    )
+
+
+def course_in_base(motion: Motion, travel: EdgeTravel) -> Course:
+    """The arrays of a motion as seen from the base, without obstacles.
+
+    Args:
+        motion: the motion.
+        travel: travel bounds along it.
+    """
+    from ffsr_plan.proof.kernels.course import Course
+    from ffsr_plan.proof.kernels.travel import BaseMotion
+
+    whole, straight = travel.over(0.0, 1.0, in_base=True)
+    return Course(
+        motion.robot.bodies,
+        travel.shapes,
+        travel.points,
+        Scene().tree,
+        BaseMotion(False, False, (0.0, 0.0, 0.0), 0.0),
+        np.array(IDENTITY[None]),
+        _still(motion).partial,
+        np.zeros_like(motion.positions),
+        np.array(motion.joint_values),
+        whole.points,
+        straight,
+    )
+
+
+def _still(motion: Motion) -> Reaction:
+    """A reaction to no motion, for arrays of the same kind."""
+    begin = motion.joint_values[:1]
+    return Reaction(motion.robot, begin, np.zeros_like(begin))

@@ -1,0 +1,1 @@
+"""Compiled travel bound, and compiled interval halving on distances in closed form."""
