@@ -88,8 +88,8 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
             at_middle = rotations.exp(middles[:, None] * turns[edge])
             travel = held_travel(bound, (now, rates, lengths, at_middle), turns)
             omega = np.linalg.norm(turns, axis=1)
-        points = rng.integers(travel.points.speed.shape[1], size=len(edge))
-        follows = -travel.points.velocity[np.arange(len(edge)), points]
+        points = rng.integers(travel.points["speed"].shape[1], size=len(edge))
+        follows = -travel.points["velocity"][np.arange(len(edge)), points]
         moves = np.where(which[:, None] == 2, follows, base)
         places = about @ np.swapaxes(rotations.matrix(quats), -1, -2)
         places = places.reshape(*times.shape, -1, 3)
@@ -111,7 +111,7 @@ def held_travel(
         bound.in_world(*each[:3], BaseMotion(False, False, tuple(turn), 0.0), each[3])
         for turn, each in zip(turns, zip(*parts, strict=True), strict=True)
     ]
-    points = np.concatenate([each.points for each in travels]).view(np.recarray)
+    points = np.concatenate([each.points for each in travels])
     return IntervalTravel(
         points, np.concatenate([each.lengths for each in travels]), travels[0].first
     )
@@ -120,8 +120,8 @@ def held_travel(
 def relative_places(robot: fp.SpaceRobot, joint_values: np.ndarray) -> np.ndarray:
     """(N, P, 3) points of all shapes relative to the base; `Tree` is tested against Pinocchio."""
     poses, points = Tree(robot.model).poses(joint_values), TravelBound(robot).points
-    links = points.link
-    return poses.origins[:, links] + turned(poses.rotations[:, links], points.place)
+    links = points["link"]
+    return poses.origins[:, links] + turned(poses.rotations[:, links], points["place"])
 
 
 def simple_speeds(
@@ -147,10 +147,10 @@ def simple_speeds(
             inertia += least
         omega = np.sqrt(energy / inertia)
     bound = TravelBound(robot)
-    links, reach = bound.points.link, np.linalg.norm(bound.points.place, axis=1)
+    links, reach = bound.points["link"], np.linalg.norm(bound.points["place"], axis=1)
     speeds = omega[:, None] * (distance[:, links] + reach)
     speeds += linear[:, links] + angular[:, links] * reach
-    return np.maximum.reduceat(speeds, bound.shapes.first, axis=-1)
+    return np.maximum.reduceat(speeds, bound.shapes["first"], axis=-1)
 
 
 class Ratios:
