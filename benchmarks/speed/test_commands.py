@@ -44,7 +44,7 @@ def test_command_that_plans_inspection(benchmark, reference, tmp_path):
 def test_first_plan_of_an_installation(benchmark, reference, tmp_path):
     """`plan` of a scenario without any machine code on disk."""
     program = "import ffsr_plan as fp; fp.plan(fp.load_scenario('fig2a'))"
-    folders = iter(tmp_path / str(k) for k in range(2))
+    folders = iter(tmp_path / str(k) for k in range(1))
 
     def run(folder):
         subprocess.run(
@@ -54,7 +54,7 @@ def test_first_plan_of_an_installation(benchmark, reference, tmp_path):
             env={"NUMBA_CACHE_DIR": str(folder), "PATH": "", "PYTHONPATH": ROOT},
         )
 
-    benchmark.pedantic(run, setup=lambda: ((next(folders),), {}), rounds=2)
+    benchmark.pedantic(run, setup=lambda: ((next(folders),), {}), rounds=1)
     record(benchmark, reference)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NoReturn, TypeVar, cast
+from typing import Any, NoReturn, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 States = NDArray[np.int8]
-Records = np.recarray[Any, np.dtype[np.record]]
+Records = NDArray[Any]
 """Rows with named fields. A kernel takes them as one argument, which compiles in less time."""
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
 Key = TypeVar("Key")
@@ -33,7 +33,7 @@ def records(row: np.dtype[Any], *shape: int) -> Records:
         row: names and types of the fields.
         shape: of the result.
     """
-    return cast("Records", np.zeros(shape, row).view(np.recarray))
+    return np.zeros(shape, row)
 
 
 class ReadOnlyDict(dict[Key, Value]):

@@ -184,14 +184,29 @@ def _axes(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes]
 
 def _draw_obstacles(axes: Axes, plan: PlanData, view: Array, solid: Flags) -> None:
     """Circles, those that are not `solid` (N,) faint; with their indices if they are few."""
-    from matplotlib.patches import Circle
+    from matplotlib.collections import EllipseCollection
 
-    scene = plan.problem.scene
-    for k, (center, radius) in enumerate(zip(scene.centers @ view.T, scene.radii, strict=True)):
-        style = {"zorder": 2.0} if solid[k] else {"zorder": 1.0, "alpha": 0.12}
-        axes.add_patch(Circle(center, radius, facecolor=_OBSTACLE, edgecolor="#5c6168", **style))
-        if len(scene) <= _NUMBERED:
-            axes.annotate(str(k), center, ha="center", va="center", color="white", zorder=3)
+    scene, places = plan.problem.scene, plan.problem.scene.centers @ view.T
+    for chosen, zorder, alpha in ((solid, 2.0, 1.0), (~solid, 1.0, 0.12)):
+        wide = 2.0 * scene.radii[chosen]
+        circles = EllipseCollection(
+            wide,
+            wide,
+            np.zeros(len(wide)),
+            units="xy",
+            offsets=places[chosen],
+            offset_transform=axes.transData,
+            facecolor=_OBSTACLE,
+            edgecolor="#5c6168",
+            alpha=alpha,
+            zorder=zorder,
+        )
+        axes.add_collection(circles, autolim=False)
+    for side in (-1.0, 1.0):
+        axes.update_datalim(places + side * scene.radii[:, None])
+    if len(scene) <= _NUMBERED:
+        for k, place in enumerate(places):
+            axes.annotate(str(k), place, ha="center", va="center", color="white", zorder=3)
 
 
 def _draw_trails(axes: Axes, plan: PlanData, view: Array) -> None:

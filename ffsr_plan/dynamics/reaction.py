@@ -9,7 +9,7 @@ has a bound; docs/proof.md, section 9, derives it.
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -68,7 +68,7 @@ class Reaction:
         self.increments: Array = np.tile(rotations.IDENTITY, (len(steps), 1))
         self.errors: Array = np.zeros(len(steps))
         kernels.chain(substeps, memory, self.increments, self.errors)
-        first = np.searchsorted(substeps.segment, np.arange(len(steps) + 1))
+        first = np.searchsorted(substeps["segment"], np.arange(len(steps) + 1))
         self.partial = Partial(first, substeps, series)
 
     @classmethod
@@ -136,8 +136,8 @@ def _cut(
         more = records(SUBSTEP, 2 * len(substeps))
         more[: len(substeps)] = substeps
         substeps = more
-    substeps = cast("Records", substeps[:count].copy())
-    given_up = substeps.segment[substeps.length == 0.0]
+    substeps = substeps[:count].copy()
+    given_up = substeps["segment"][substeps["length"] == 0.0]
     if len(given_up):
         largest = float(np.max(np.abs(steps[given_up[0]])))
         raise IntegrationError(

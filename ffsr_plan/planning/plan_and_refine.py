@@ -65,7 +65,7 @@ def plan(
             every lattice without posture axes, as with them paths are not refined.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
-        time_limit: [s] from call to return, within 5 % and 20 ms; compiling does not count.
+        time_limit: [s] from call to return, but for compiling; few calls are 5 % + 20 ms late.
         until: `first` returns the first path that is proven free, where there is no lattice.
         on_cycle: called with a `Cycle` after each cycle, for a single colony; without a lattice,
             with a `TreeCycle` after each round.

@@ -50,7 +50,7 @@ class EdgeTravel:
         self._known: dict[tuple[float, float, bool], tuple[IntervalTravel, Flags]] = {}
         whole = self.over(0.0, 1.0)[0]
         self.speeds = _largest_speed(whole)
-        self.attitude_error = float(np.max(whole.points.attitude_error, initial=0.0))
+        self.attitude_error = float(np.max(whole.points["attitude_error"], initial=0.0))
 
     @cached_property
     def speeds_in_base(self) -> Array:
@@ -105,14 +105,16 @@ class EdgeTravel:
         else:
             quats = motion.attitudes_at((np.arange(m) + time) / m)
             travel = self._bound.in_world(values, rates, lengths, self.base, quats)
-        largest = lengths * np.max(travel.points.speed, axis=1, initial=0.0)
-        curvature = np.max(travel.points.curvature, axis=1, initial=0.0)
+        largest = lengths * np.max(travel.points["speed"], axis=1, initial=0.0)
+        curvature = np.max(travel.points["curvature"], axis=1, initial=0.0)
         self._known[begin, end, in_base] = travel, curvature <= _STRAIGHTNESS * largest
         return self._known[begin, end, in_base]
 
 
 def _largest_speed(whole: IntervalTravel) -> Array:
     """(m,) bound on the speed of any point over whole edges [m]."""
-    from_middle = np.linalg.norm(whole.points.velocity, axis=-1) + 2.0 * whole.points.curvature
-    largest: Array = np.max(np.minimum(from_middle, whole.points.speed), axis=1, initial=0.0)
+    from_middle = (
+        np.linalg.norm(whole.points["velocity"], axis=-1) + 2.0 * whole.points["curvature"]
+    )
+    largest: Array = np.max(np.minimum(from_middle, whole.points["speed"]), axis=1, initial=0.0)
     return largest

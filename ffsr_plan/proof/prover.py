@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_collision
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
-from ffsr_plan.core.arrays import Array, IntArray, Records, records
+from ffsr_plan.core.arrays import Array, IntArray, records
 from ffsr_plan.core.errors import NoPath
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.course import course_in_base, course_of
@@ -195,15 +195,15 @@ class Prover:
         from ffsr_plan.proof.kernels import edge_proof
 
         edges, course = records(edge_proof.EDGE, len(layers)), self._course
-        edges.layer, edges.tail, edges.head, edges.ends = layers, tails, heads, ends
+        edges["layer"], edges["tail"], edges["head"], edges["ends"] = layers, tails, heads, ends
         halving = edge_proof.intervals_for(course)
         for first in range(0, len(layers), _EDGES_AT_ONCE):
             self._deadline.check()
-            some = cast("Records", edges[first : first + _EDGES_AT_ONCE])
+            some = edges[first : first + _EDGES_AT_ONCE]
             edge_proof.prove(
                 course, self.speeds, some, self.rounding, self.tolerance, self._memory, halving
             )
-        verdicts, columns = [], (edges.state, edges.least, edges.time, edges.count)
+        verdicts, columns = [], [edges[name] for name in ("state", "least", "time", "count")]
         for k, (state, least, time, count) in enumerate(
             zip(*(column.tolist() for column in columns), strict=True)
         ):

@@ -6,7 +6,7 @@ The mathematics is in `kernels.travel`.
 from __future__ import annotations
 
 from itertools import product
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 import coal
 import numpy as np
@@ -45,12 +45,12 @@ class IntervalTravel(NamedTuple):
             (..., g) bound of each shape [m].
         """
         length: Array = self.lengths[interval][..., None]
-        points = cast("Records", self.points[interval])
-        velocity = points.velocity + base_step[..., None, :]
-        straight = length * np.linalg.norm(velocity, axis=-1) + points.curvature
+        points: Records = self.points[interval]
+        velocity = points["velocity"] + base_step[..., None, :]
+        straight = length * np.linalg.norm(velocity, axis=-1) + points["curvature"]
         base_speed = np.linalg.norm(base_step, axis=-1)[..., None]
-        coarse = length * (base_speed + points.speed)
-        return self._of_shapes(np.minimum(straight, coarse) + points.attitude_error)
+        coarse = length * (base_speed + points["speed"])
+        return self._of_shapes(np.minimum(straight, coarse) + points["attitude_error"])
 
     def within(self, interval: int, length: float, offset: float, base_step: Array) -> Array:
         """T over a part of an interval that does not contain the middle.
@@ -67,11 +67,11 @@ class IntervalTravel(NamedTuple):
             (g,) bound of each shape [m].
         """
         points: Records = self.points[interval]
-        velocity = np.linalg.norm(points.velocity + base_step, axis=-1)
-        change = 4.0 / self.lengths[interval] ** 2 * points.curvature
-        coarse = np.linalg.norm(base_step) + points.speed
+        velocity = np.linalg.norm(points["velocity"] + base_step, axis=-1)
+        change = 4.0 / self.lengths[interval] ** 2 * points["curvature"]
+        coarse = np.linalg.norm(base_step) + points["speed"]
         fastest = np.minimum(velocity + abs(offset) * change, coarse)
-        return self._of_shapes(length * fastest + points.attitude_error)
+        return self._of_shapes(length * fastest + points["attitude_error"])
 
     def _of_shapes(self, points: Array) -> Array:
         largest: Array = np.maximum.reduceat(points, self.first, axis=-1)
@@ -93,18 +93,21 @@ class TravelBound:
         self._bodies, given = robot.bodies, robot.primitives
         corners = [hull_points(shape) for shape in robot.collision_model.geometryObjects]
         self.shapes: Records = records(SHAPE, len(corners))
-        self.shapes.kind, self.shapes.extent, self.shapes.link = (
-            given.kinds,
-            given.sizes,
-            given.links,
-        )
-        self.shapes.rotation, self.shapes.position = given.rotations, given.positions
         counts = np.array([len(each) for each in corners], dtype=np.int64)
-        self.shapes.end = np.cumsum(counts)
-        self.shapes.first = self.shapes.end - counts
+        columns = {
+            "kind": given.kinds,
+            "extent": given.sizes,
+            "link": given.links,
+            "rotation": given.rotations,
+            "position": given.positions,
+            "first": np.cumsum(counts) - counts,
+            "end": np.cumsum(counts),
+        }
+        for name, column in columns.items():
+            self.shapes[name] = column
         self.points: Records = records(HULL_POINT, int(counts.sum()))
-        self.points.link = np.repeat(given.links, counts)
-        self.points.place = np.concatenate([np.zeros((0, 3)), *corners])
+        self.points["link"] = np.repeat(given.links, counts)
+        self.points["place"] = np.concatenate([np.zeros((0, 3)), *corners])
 
     def in_world(
         self, values: Array, rates: Array, lengths: Array, base: BaseMotion, quats: Array
@@ -125,7 +128,7 @@ class TravelBound:
             self._bodies, self.points, np.array(values), np.array(rates), lengths, base,
             np.array(quats), scratch_for(len(self._bodies)), found,
         )  # fmt: skip
-        return IntervalTravel(found, lengths, self.shapes.first)
+        return IntervalTravel(found, lengths, self.shapes["first"])
 
     def in_base(self, values: Array, rates: Array, lengths: Array) -> IntervalTravel:
         """The bound on travel relative to the base, for a base step of zero.

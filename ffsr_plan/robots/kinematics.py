@@ -138,13 +138,22 @@ class Tree:
         """
         inertias = list(model.inertias)[1:]
         bodies = records(BODY, len(inertias))
-        bodies.parent, bodies.prismatic, bodies.axis = self.parents, self.prismatic, self.axes
-        bodies.fixed, bodies.sine, bodies.versine = self._fixed, self._sine, self._versine
-        bodies.offset, bodies.slide = self._offsets, self._slide
-        bodies.mass = [body.mass for body in inertias]
-        bodies.lever = [body.lever for body in inertias]
-        bodies.inertia = [body.inertia for body in inertias]
-        bodies.moments = np.maximum(np.linalg.eigvalsh(bodies.inertia), 0.0)[:, [0, 2]]
+        columns = {
+            "parent": self.parents,
+            "prismatic": self.prismatic,
+            "fixed": self._fixed,
+            "sine": self._sine,
+            "versine": self._versine,
+            "offset": self._offsets,
+            "slide": self._slide,
+            "axis": self.axes,
+            "mass": [body.mass for body in inertias],
+            "lever": [body.lever for body in inertias],
+            "inertia": [body.inertia for body in inertias],
+        }
+        for name, column in columns.items():
+            bodies[name] = column
+        bodies["moments"] = np.maximum(np.linalg.eigvalsh(bodies["inertia"]), 0.0)[:, [0, 2]]
         return frozen(bodies)
 
     def offsets(self, joint_values: Array) -> Array:

@@ -38,8 +38,10 @@ def test_the_compiled_rate_is_the_connection_times_joint_rates(seed):
     values, rates = rng.uniform(-2.0, 2.0, (2, robot.nd))
     _, whole, least = states_at(robot, values, rates)
     expected = connections(robot, values[None])[0] @ rates
-    assert np.allclose(whole.rate, expected, rtol=0.0, atol=1e-12 * (1.0 + np.abs(expected).max()))
-    xx, yy, zz, xy, xz, yz = whole.inertia
+    assert np.allclose(
+        whole["rate"], expected, rtol=0.0, atol=1e-12 * (1.0 + np.abs(expected).max())
+    )
+    xx, yy, zz, xy, xz, yz = whole["inertia"]
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     smallest = np.linalg.eigvalsh(inertia)[0]
     assert smallest / np.sqrt(3.0) * (1 - 1e-9) <= least <= smallest * (1 + 1e-9)
@@ -51,26 +53,26 @@ def complex_rate(robot, values, rates):
     turned = np.tile(np.eye(3, dtype=complex), (n, 1, 1))
     origins, angular, linear = np.zeros((3, n, 3), dtype=complex)
     for j in range(1, n):
-        p, q, rate = bodies.parent[j], values[j - 1], rates[j - 1]
-        local = bodies.fixed[j].astype(complex)
-        if not bodies.prismatic[j]:
-            local = local + np.sin(q) * bodies.sine[j] + (1.0 - np.cos(q)) * bodies.versine[j]
-        step = turned[p] @ (bodies.offset[j] + q * bodies.slide[j])
+        p, q, rate = bodies["parent"][j], values[j - 1], rates[j - 1]
+        local = bodies["fixed"][j].astype(complex)
+        if not bodies["prismatic"][j]:
+            local = local + np.sin(q) * bodies["sine"][j] + (1.0 - np.cos(q)) * bodies["versine"][j]
+        step = turned[p] @ (bodies["offset"][j] + q * bodies["slide"][j])
         turned[j] = turned[p] @ local
-        along = turned[j] @ bodies.axis[j] * rate
+        along = turned[j] @ bodies["axis"][j] * rate
         origins[j] = origins[p] + step
-        linear[j] = linear[p] + np.cross(angular[p], step) + along * bodies.prismatic[j]
-        angular[j] = angular[p] + along * (not bodies.prismatic[j])
-    levers = np.einsum("nij,nj->ni", turned, bodies.lever)
+        linear[j] = linear[p] + np.cross(angular[p], step) + along * bodies["prismatic"][j]
+        angular[j] = angular[p] + along * (not bodies["prismatic"][j])
+    levers = np.einsum("nij,nj->ni", turned, bodies["lever"])
     flows = linear + np.cross(angular, levers)
     arms = origins + levers
-    arms = arms - bodies.mass @ arms / bodies.mass.sum()
-    own = turned @ bodies.inertia @ np.swapaxes(turned, 1, 2)
+    arms = arms - bodies["mass"] @ arms / bodies["mass"].sum()
+    own = turned @ bodies["inertia"] @ np.swapaxes(turned, 1, 2)
     squares = np.einsum("ni,ni->n", arms, arms)
     spread = squares[:, None, None] * np.eye(3) - arms[:, :, None] * arms[:, None]
-    inertia = np.sum(own + bodies.mass[:, None, None] * spread, axis=0)
+    inertia = np.sum(own + bodies["mass"][:, None, None] * spread, axis=0)
     momentum = np.sum(
-        np.einsum("nij,nj->ni", own, angular) + bodies.mass[:, None] * np.cross(arms, flows), 0
+        np.einsum("nij,nj->ni", own, angular) + bodies["mass"][:, None] * np.cross(arms, flows), 0
     )
     return -np.linalg.solve(inertia, momentum)
 
@@ -80,7 +82,7 @@ def test_the_rate_at_complex_joint_values_is_below_its_bound(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     values, rates = rng.uniform(-2.0, 2.0, (2, robot.nd))
     links, whole, least = states_at(robot, values, rates)
-    assert np.allclose(complex_rate(robot, values, rates), whole.rate, atol=1e-12)
+    assert np.allclose(complex_rate(robot, values, rates), whole["rate"], atol=1e-12)
     moved, shares, finite = records(EXCURSION, robot.nd + 1), [], 0
     for _ in range(40):
         real, imaginary = 10.0 ** rng.uniform(-2.5, 0.0, 2)
@@ -115,9 +117,9 @@ def test_the_constant_of_the_interpolation_is_that_of_the_points():
     """1 plus the largest sum of the absolute Lagrange polynomials."""
     points = reaction_kernels.gauss_points()
     u = np.linspace(-1.0, 1.0, 20001)
-    lagrange = np.vander(u, len(points), increasing=True) @ points.monomials
+    lagrange = np.vander(u, len(points), increasing=True) @ points["monomials"]
     assert np.allclose(lagrange.sum(axis=1), 1.0, atol=1e-11)
-    integrals = np.abs(lagrange).mean(axis=0) * 2.0 / points.weight
+    integrals = np.abs(lagrange).mean(axis=0) * 2.0 / points["weight"]
     assert integrals.max() < reaction_kernels._ABSOLUTE
     largest = np.abs(lagrange).sum(axis=1).max()
     assert reaction_kernels.INTERPOLATION - 0.2 < 1.0 + largest < reaction_kernels.INTERPOLATION
@@ -152,8 +154,8 @@ def test_segments_are_cut_where_they_need_it():
     steps = np.array([[0.0], [1e-3], [3.0]]) * np.ones(robot.nd)
     reaction = Reaction(robot, np.zeros((3, robot.nd)), steps)
     substeps = reaction.partial.substeps
-    counts = np.bincount(substeps.segment, minlength=3)
+    counts = np.bincount(substeps["segment"], minlength=3)
     assert counts[0] == counts[1] == 1
     assert counts[2] > 4
-    lengths = [substeps.length[substeps.segment == k].sum() for k in range(3)]
+    lengths = [substeps["length"][substeps["segment"] == k].sum() for k in range(3)]
     assert np.allclose(lengths, 1.0, rtol=0.0, atol=1e-15)

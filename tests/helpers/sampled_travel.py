@@ -105,16 +105,16 @@ def case(seed, held):
 
 def base_steps(rng, travel):
     """Base steps, random or such that a point hardly moves and only its curvature remains."""
-    count, points = travel.points.speed.shape
+    count, points = travel.points["speed"].shape
     steps = rng.normal(size=(count, 3)) * rng.uniform(0, 0.5, (count, 1))
-    against = -travel.points.velocity[np.arange(count), rng.integers(points, size=count)]
+    against = -travel.points["velocity"][np.arange(count), rng.integers(points, size=count)]
     return np.where(rng.random((count, 1)) < 0.5, steps, against)
 
 
 def tightness(way, base_step=None, length=1.0, middle=0.5):
     """(g,) sampled travel / T of each shape; by default the base step stops the last point."""
     travel = way.travel(np.array([middle]), np.array([length]))
-    step = -travel.points.velocity[0, -1] if base_step is None else base_step
+    step = -travel.points["velocity"][0, -1] if base_step is None else base_step
     bound = travel.bounds(0, step)
     sampled = lengths_of(way.places(middle, length), step, length)
     assert np.all(sampled <= bound + ROUNDING)

@@ -97,22 +97,22 @@ def test_decisions_are_verdicts_of_the_proof_by_coal(seed, mode):
         tails[:] = heads[:] = 0.0
     ends = np.column_stack([prover.clearances(layers, tails), prover.clearances(layers + 1, heads)])
     found, memory = records(EDGE, count), memory_for(course)
-    found.layer, found.tail, found.head, found.ends = layers, tails, heads, ends
+    found["layer"], found["tail"], found["head"], found["ends"] = layers, tails, heads, ends
     halving = intervals_for(course)
     prove(course, prover.speeds, found, prover.rounding, 1e-4, memory, halving)
     exact = bool(robot.primitives.exact.all())
-    for k, state in enumerate(found.state):
+    for k, state in enumerate(found["state"]):
         verdict = prover.certify(int(layers[k]), tails[k], heads[k], tuple(ends[k]))
         if state == PROVEN:
             assert verdict.free
         if state == TOUCHED and exact:
             assert not verdict.free
-            assert verdict.time == found.time[k]
-            assert verdict.least_clearance == pytest.approx(found.least[k], abs=1e-9)
+            assert verdict.time == found["time"][k]
+            assert verdict.least_clearance == pytest.approx(found["least"][k], abs=1e-9)
         if state == OPEN and exact:
             assert verdict.least_clearance < 1.1e-4
-        if exact and state == PROVEN and verdict.queries == found.count[k]:
-            assert verdict.least_clearance == pytest.approx(found.least[k], abs=1e-9)
+        if exact and state == PROVEN and verdict.queries == found["count"][k]:
+            assert verdict.least_clearance == pytest.approx(found["least"][k], abs=1e-9)
 
 
 @pytest.mark.parametrize("mode", MODES)

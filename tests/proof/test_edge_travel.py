@@ -38,13 +38,13 @@ def traced(motion, layer, begin, end, base_step):
     robot, bound = motion.robot, TravelBound(motion.robot)
     points = bound.points
     poses = robot.tree.poses(robot.joint_values(q))
-    about = poses.origins[:, points.link] + np.einsum(
-        "npij,pj->npi", poses.rotations[:, points.link], points.place
+    about = poses.origins[:, points["link"]] + np.einsum(
+        "npij,pj->npi", poses.rotations[:, points["link"]], points["place"]
     )
     turned = np.einsum("nij,npj->npi", rotations.matrix(q[:, 3:7]), about)
     own = q[:, None, :3] if motion.mode.floats else times[:, None, None] * base_step
     places = turned + own
-    return np.linalg.norm(np.diff(places, axis=0), axis=2).sum(axis=0), bound.shapes.first
+    return np.linalg.norm(np.diff(places, axis=0), axis=2).sum(axis=0), bound.shapes["first"]
 
 
 @pytest.mark.parametrize("mode", list(Mode))
@@ -59,7 +59,9 @@ def test_no_shape_exceeds_the_bound_on_any_dyadic_interval(mode, seed):
         begin, end = part / 2**level, (part + 1) / 2**level
         whole = travel.over(0.0, 1.0)[0]
         # the base compensates the velocity of a point, so that its travel is small
-        step = -whole.points.velocity[layer, int(rng.integers(whole.points.velocity.shape[1]))]
+        step = -whole.points["velocity"][
+            layer, int(rng.integers(whole.points["velocity"].shape[1]))
+        ]
         step = step if rng.random() < 0.6 else rng.normal(size=3) * 0.3
         step = np.zeros(3) if motion.mode.floats else step
         ways, first = traced(motion, layer, begin, end, step)
@@ -74,7 +76,7 @@ def test_no_shape_exceeds_the_bound_on_any_dyadic_interval(mode, seed):
 def test_a_part_is_bounded_by_the_numbers_of_its_interval(seed):
     motion, rng = motion_of(seed, "free-flying", edges=1), np.random.default_rng(seed)
     whole = EdgeTravel(motion).over(0.0, 1.0)[0]
-    step = -whole.points.velocity[0, int(rng.integers(whole.points.velocity.shape[1]))]
+    step = -whole.points["velocity"][0, int(rng.integers(whole.points["velocity"].shape[1]))]
     for part in (0, 1, 2, 3, 5, 7):
         ways, first = traced(motion, 0, part / 8, (part + 1) / 8, step)
         bounds = whole.within(0, 1 / 8, (part + 0.5) / 8 - 0.5, step)

@@ -51,15 +51,15 @@ def test_no_point_exceeds_its_speed_and_acceleration_bounds(held, seed):
     """Second differences are means of the acceleration, first ones of the velocity."""
     way, _, middles, lengths = case(seed, held)
     travel = way.travel(middles, lengths)
-    ends = np.append(travel.first[1:], travel.points.speed.shape[1])
+    ends = np.append(travel.first[1:], travel.points["speed"].shape[1])
     for k in range(4):
         for p, first, end in zip(
             way.places(middles[k], lengths[k]), travel.first, ends, strict=True
         ):
             speed = np.linalg.norm(np.diff(p, axis=0), axis=2) * SAMPLES / lengths[k]
             curvature = np.linalg.norm(np.diff(p, 2, axis=0), axis=2) * SAMPLES**2 / 4.0
-            assert np.all(speed <= np.max(travel.points.speed[k, first:end]) + 1e-9)
-            assert np.all(curvature <= np.max(travel.points.curvature[k, first:end]) + 1e-9)
+            assert np.all(speed <= np.max(travel.points["speed"][k, first:end]) + 1e-9)
+            assert np.all(curvature <= np.max(travel.points["curvature"][k, first:end]) + 1e-9)
 
 
 @given(seeds)
@@ -109,7 +109,7 @@ def test_the_base_rotation_is_the_connection_times_joint_rates():
         made.collision_model.addGeometryObject(sphere)
         way = SampledEdge(made, rng.uniform(-1, 1, made.nd), rng.normal(size=made.nd))
         omega = connections(made, way.begin[None])[0] @ way.step
-        velocity = way.travel(np.zeros(1), np.ones(1)).points.velocity[0, -1]
+        velocity = way.travel(np.zeros(1), np.ones(1)).points["velocity"][0, -1]
         assert velocity == pytest.approx(np.cross(omega, arm), abs=1e-12)
 
 

@@ -139,7 +139,9 @@ def test_a_slider_is_fastest_at_its_largest_offset():
     travel = way.travel(np.array([0.5]), np.ones(1))
     speeds = np.linalg.norm(np.diff(way.places(0.5, 1.0)[0], axis=0), axis=2) * SAMPLES
     assert (
-        1.3 * np.linalg.norm(travel.points.velocity) < np.max(speeds) <= np.max(travel.points.speed)
+        1.3 * np.linalg.norm(travel.points["velocity"])
+        < np.max(speeds)
+        <= np.max(travel.points["speed"])
     )
 
 
@@ -163,5 +165,7 @@ def test_a_base_gets_faster_when_masses_are_drawn_in():
     travel = way.travel(np.array([0.5]), np.ones(1))
     speeds = np.linalg.norm(np.diff(way.places(0.5, 1.0)[0], axis=0), axis=2) * SAMPLES
     assert (
-        5.0 * np.linalg.norm(travel.points.velocity) < np.max(speeds) <= np.max(travel.points.speed)
+        5.0 * np.linalg.norm(travel.points["velocity"])
+        < np.max(speeds)
+        <= np.max(travel.points["speed"])
     )

@@ -35,7 +35,13 @@ def test_the_bound_is_that_of_the_reference(seed, kind):
         expected = reference.reacting(links, quats, 1e-5, floats).world
     points = found.points
     for ours, theirs in zip(
-        (points.velocity, points.speed, points.curvature, points.attitude_error, *found[1:]),
+        (
+            points["velocity"],
+            points["speed"],
+            points["curvature"],
+            points["attitude_error"],
+            *found[1:],
+        ),
         expected,
         strict=True,
     ):

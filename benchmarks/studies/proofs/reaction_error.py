@@ -4,7 +4,7 @@
 
 integrates segments of random robots with light and heavy bodies and joint steps of up to three
 radians at several tolerances, compares them with the least tolerance, and writes
-docs/benchmarks/reaction_error.md. It takes about ten minutes.
+docs/benchmarks/reaction_error.md. It takes more than half an hour.
 """
 
 import argparse

@@ -89,8 +89,8 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
             moved = BaseMotion(False, False, turns[edge], 0.0)
             travel = bound.in_world(now, rates, lengths, moved, at_middle)
             omega = np.linalg.norm(turns, axis=1)
-        points = rng.integers(travel.points.speed.shape[1], size=len(edge))
-        follows = -travel.points.velocity[np.arange(len(edge)), points]
+        points = rng.integers(travel.points["speed"].shape[1], size=len(edge))
+        follows = -travel.points["velocity"][np.arange(len(edge)), points]
         moves = np.where(which[:, None] == 2, follows, base)
         places = about @ np.swapaxes(rotations.matrix(quats), -1, -2)
         places = places.reshape(*times.shape, -1, 3)
@@ -106,8 +106,8 @@ def measure(robot: fp.SpaceRobot, seed: int) -> Iterator[Found]:
 def relative_places(robot: fp.SpaceRobot, joint_values: np.ndarray) -> np.ndarray:
     """(N, P, 3) points of all shapes relative to the base; `Tree` is tested against Pinocchio."""
     poses, points = Tree(robot.model).poses(joint_values), TravelBound(robot).points
-    links = points.link
-    return poses.origins[:, links] + turned(poses.rotations[:, links], points.place)
+    links = points["link"]
+    return poses.origins[:, links] + turned(poses.rotations[:, links], points["place"])
 
 
 def simple_speeds(
@@ -133,10 +133,10 @@ def simple_speeds(
             inertia += least
         omega = np.sqrt(energy / inertia)
     bound = TravelBound(robot)
-    links, reach = bound.points.link, np.linalg.norm(bound.points.place, axis=1)
+    links, reach = bound.points["link"], np.linalg.norm(bound.points["place"], axis=1)
     speeds = omega[:, None] * (distance[:, links] + reach)
     speeds += linear[:, links] + angular[:, links] * reach
-    return np.maximum.reduceat(speeds, bound.shapes.first, axis=-1)
+    return np.maximum.reduceat(speeds, bound.shapes["first"], axis=-1)
 
 
 class Ratios:

@@ -48,7 +48,7 @@ _EPS = np.finfo(np.float64).eps
 
 def base_at_rest(links: Records) -> Records:
     """Put the base at rest at the origin: the first of n records of `LINK_STATE`, all zero."""
-    links.rotation[0] = np.eye(3)
+    links["rotation"][0] = np.eye(3)
     return links
 
 

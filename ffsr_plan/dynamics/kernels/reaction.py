@@ -103,12 +103,12 @@ def memory_for(count: int) -> Memory:
 def gauss_points() -> Records:
     """(13,) the points and their interpolation, records of `POINT`."""
     points = records(POINT, POINTS)
-    points.time, points.weight = legendre.leggauss(POINTS)
+    points["time"], points["weight"] = legendre.leggauss(POINTS)
     powers = np.zeros((POINTS, POINTS))  # of the Legendre polynomials
     for k in range(POINTS):
         powers[: k + 1, k] = legendre.leg2poly(np.eye(POINTS)[k])[: k + 1]
-    values = legendre.legvander(points.time, POINTS - 1) * points.weight[:, None]
-    points.monomials = powers @ (values * (np.arange(POINTS) + 0.5)).T
+    values = legendre.legvander(points["time"], POINTS - 1) * points["weight"][:, None]
+    points["monomials"] = powers @ (values * (np.arange(POINTS) + 0.5)).T
     return points
 
 

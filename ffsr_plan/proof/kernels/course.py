@@ -114,7 +114,7 @@ def memory_for(course: Course) -> Memory:
     """Memory for the edges of a course."""
     shapes = len(course.shapes)
     frames = np.zeros((shapes, 15))
-    frames[:, 12:] = course.shapes.extent
+    frames[:, 12:] = course.shapes["extent"]
     return Memory(
         scratch_for(len(course.bodies)),
         records(TRAVEL, len(course.points)),
