@@ -168,9 +168,9 @@ def _shapes(robot: SpaceRobot) -> Records:
     """(g,) of `SHAPE`."""
     given, box = robot.primitives, robot.primitives.kinds == BOX
     shapes = records(SHAPE, len(given.kinds))
-    shapes.link, shapes.kind = given.links, given.kinds
-    shapes.rotation, shapes.position = given.rotations, given.positions
-    shapes.frame[:, 12:] = given.sizes
-    shapes.skin[~box] = given.sizes[~box, 0]
-    shapes.reach = np.where(box, np.linalg.norm(given.sizes, axis=1), given.sizes[:, 1])
+    shapes["link"], shapes["kind"] = given.links, given.kinds
+    shapes["rotation"], shapes["position"] = given.rotations, given.positions
+    shapes["frame"][:, 12:] = given.sizes
+    shapes["skin"][~box] = given.sizes[~box, 0]
+    shapes["reach"] = np.where(box, np.linalg.norm(given.sizes, axis=1), given.sizes[:, 1])
     return shapes
