@@ -142,6 +142,7 @@ class Problem:
         self._check_attitude()
         self._check_displacement()
         self._check_window()
+        self._check_clearance()
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{name}={value}" for name, value in self._summary())
@@ -303,6 +304,13 @@ class Problem:
             if np.any(place < self.window[0] - _SAME) or np.any(place > self.window[1] + _SAME):
                 allowed = f"a window that holds the base at the {name}, {place.tolist()}"
                 raise InvalidInput("window", self.window.tolist(), allowed)
+
+    def _check_clearance(self) -> None:
+        """Raise `InvalidInput` if an obstacle and the clearance from it are too large together."""
+        most = _LARGEST - float(np.max(self.scene.radii, initial=0.0))
+        if self.min_clearance > most:
+            allowed = f"at most {most:g} m, with the largest obstacle"
+            raise InvalidInput("min_clearance", self.min_clearance, allowed)
 
     def _summary(self) -> list[tuple[str, str]]:
         """Names and values for representations."""

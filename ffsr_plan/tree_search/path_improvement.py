@@ -8,6 +8,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.rotations import angle_between
+from ffsr_plan.tree_search.kernels.attitude_keeping import straighten
 from ffsr_plan.tree_search.kernels.closed_loops import ENOUGH, LOOP_CORNERS, insert_loops
 from ffsr_plan.tree_search.kernels.flight import fly_path
 from ffsr_plan.tree_search.kernels.layered_search import (
@@ -108,6 +109,14 @@ class ImprovedPath:
                 break
             stop = min(self._until(CHUNK), end)
             self.last = insert_loops(self._space.arrays, self._memory, self.last, random, stop)
+        self._weigh()
+
+    def straighten(self, random: RandomState, checks: int) -> None:
+        """Straighten parts of a path without losing the attitude that is demanded."""
+        end = self._until(checks)
+        while self._goes_on(end):
+            stop = min(self._until(CHUNK), end)
+            self.last = straighten(self._space.arrays, self._memory, self.last, random, stop)
         self._weigh()
 
     def search_around(self, random: RandomState, checks: int) -> bool:

@@ -145,6 +145,9 @@ class SearchRounds:
             path.thin(_THINNING)
             path.turn(self._random, _TURNING)
             if path.missed > ENOUGH:
+                path.straighten(self._random, _TURNING)
+                path.turn(self._random, _TURNING)
+            if path.missed > ENOUGH:
                 continue
             if self.proven.best is None:
                 if not self._prove(path):
@@ -152,6 +155,8 @@ class SearchRounds:
                 if first:
                     break
             path.move(self._random, _FOR_NEW)
+            if self.space.problem.reach_attitude:
+                path.straighten(self._random, _FOR_NEW)
             path.thin(_THINNING)
             least = min(least, path.cost)
             self._keep(path)
@@ -187,6 +192,11 @@ class SearchRounds:
         """Improve one path until so many configurations have been checked."""
         stop = self._monitor.expired
         while (left := until - self._checks()) > 0 and not stop():
+            if self.space.problem.reach_attitude:
+                path.straighten(self._random, max(2 * left // 3, 1))
+                path.move(self._random, max(left // 6, 1))
+                path.thin(min(_THINNING, max(left // 3, 1)))
+                continue
             path.move(self._random, max(left // 3, 1))
             path.search_around(self._random, min(_AROUND, max(left // 3, 1)))
             path.thin(min(_THINNING, max(left // 3, 1)))

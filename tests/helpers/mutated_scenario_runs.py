@@ -37,7 +37,7 @@ def base_scenarios():
     for path in sorted(bundled_files.folder("scenarios").glob("*.toml")):
         data = tomllib.loads(path.read_text(encoding="utf-8"))
         if "lattice" not in data:
-            yield data | {"planner": {"checks": 2000}}
+            yield data | {"planner": {"checks": 20_000}}
             continue
         postures = bool(data["lattice"].get("postures"))
         if path.stem == "spatial_turn":
@@ -84,7 +84,7 @@ def run(text, path):
     signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
     begin = time.process_time()
     try:
-        options = ["--no-verify", "--no-refine", "--time-limit", "0.5"]
+        options = ["--no-verify", "--no-refine", "--time-limit", "2"]
         result = CliRunner().invoke(app, ["plan", str(path), *options], catch_exceptions=True)
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)

@@ -87,7 +87,7 @@ def test_a_call_that_begins_later_is_not_concerned(problem, monkeypatch):
 
 
 def test_a_time_limit_leaves_the_next_call_alone(problem):
-    assert fp.plan(problem, ENDLESS, time_limit=0.05, refine=False).interrupted
+    assert fp.plan(problem, ENDLESS, time_limit=0.3, refine=False).interrupted
     assert not fp.plan(problem, fp.MaxMinAntSystem(cycles=3), refine=False).interrupted
 
 

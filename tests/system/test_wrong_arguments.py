@@ -6,6 +6,7 @@ some arguments; what it may raise is `FfsrPlanError` alone.
 
 import itertools
 import webbrowser
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -61,7 +62,7 @@ def calls(plan, tmp_path_factory):
         fp.MaxMinAntSystem: vars(fp.MaxMinAntSystem()),
         fp.PostureAnnealing: vars(fp.PostureAnnealing()),
         fp.TreePlanner: vars(fp.TreePlanner()),
-        fp.Problem: vars(problem),
+        fp.Problem: {each.name: getattr(problem, each.name) for each in fields(problem)},
         fp.Bus: {"size": [1, 1, 1], "mass": 3.0, "inertia": None, "center_of_mass": [0, 0, 0],
                  "panels": ()},
         fp.Panel: {"size": [1, 1, 1], "position": [1, 0, 0], "mass": 1.0, "attitude": [0, 0, 0],

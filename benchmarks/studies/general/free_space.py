@@ -178,9 +178,9 @@ def main() -> None:
         f"`python -m benchmarks.studies.general.free_space --count {args.count} --first-seed "
         f"{args.first_seed} --longer {args.longer}`",
         "",
-        f"Problems without a lattice, planned by `TreePlanner`, whose default is to check {CHECKS:,}",
-        "configurations. `set`: those of `benchmarks/studies/general/problems.json`; `new`: drawn by",
-        "`families.py`, for this table alone. Times are processor time of one thread.",
+        "Problems without a lattice, planned by `TreePlanner` with its default settings, that is,",
+        f"{CHECKS:,} configurations checked. `set`: those of `problems.json`, beside the program;",
+        "`new`: drawn by `families.py` for this table. Times are processor time of one thread.",
         "",
         table(heads, rows_of(sets, args.samples)),
     ]
@@ -190,8 +190,8 @@ def main() -> None:
             "## How much longer searches gain",
             "",
             "L after the default work, as a multiple of the shorter of that and L after",
-            f"{args.factor} times the work (another seed); the first {args.longer} problems of each",
-            "kind of the set.",
+            f"{args.factor} times the work (another seed); the first {args.longer} problems of",
+            "each kind of the set.",
             "",
             table(["problems", "median", "largest"], longer(args.longer, args.factor)),
         ]

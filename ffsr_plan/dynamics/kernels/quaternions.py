@@ -93,3 +93,18 @@ def fill_matrix(quat: Array, rotation: Array) -> None:
     a[0], a[1], a[2] = 1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)
     b[0], b[1], b[2] = 2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)
     c[0], c[1], c[2] = 2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)
+
+
+@kernel
+def fill_rotation_vector(first: Array, second: Array, vector: Array) -> None:
+    """The rotation (3,) that takes attitude `first` (4,) to `second`, world axes [rad]."""
+    back, turn = first.copy(), np.empty(4)
+    inverse(back)
+    multiply(turn, second, back)
+    sine = math.sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2])
+    cosine = abs(turn[3])
+    scale = 2.0 if sine < _SMALL else 2.0 * math.atan2(sine, cosine) / sine
+    if turn[3] < 0.0:
+        scale = -scale
+    for a in range(3):
+        vector[a] = scale * turn[a]
