@@ -134,7 +134,6 @@ class MaxMinAntSystem(LatticePlanner):
             open_edges=open_edges,
             status=roadmap.status,
             visibility=visibility,
-            visibility_roulettes=_summed(visibility, roadmap.deadline),
             near=neighbourhood(indices, wide=False),
             wide=neighbourhood(indices, wide=True),
             rho=self.rho,
@@ -144,8 +143,8 @@ class MaxMinAntSystem(LatticePlanner):
             use_pheromone=self.pheromone,
             tau=np.ones((m, rows, n)),
             touched=np.zeros((m, rows), dtype=bool),
-            roulettes=np.empty((m, n, n)),
-            roulette_cycles=np.full((m, n), -1, dtype=np.int64),
+            sums=_sums(visibility, roadmap.deadline),
+            sum_cycles=np.full((m, n), -1, dtype=np.int64),
             paths=np.full((self.ants, m + 1), roadmap.lattice.origin, dtype=np.int64),
             costs=np.empty(self.ants),
             searched=np.full(max(64, self.improved), np.inf),
@@ -186,12 +185,12 @@ def _found(roadmap: Roadmap, rng: np.random.Generator, state: State) -> bool:
     return bool(np.isfinite(state.values[BEST]))
 
 
-def _summed(visibility: Array, deadline: Deadline) -> Array:
-    """(m, n, n) sums along the last axis."""
-    result = np.empty_like(visibility)
+def _sums(visibility: Array, deadline: Deadline) -> Array:
+    """(2, m, n, n) sums of visibility along the last axis, and room for those with pheromone."""
+    result = np.empty((2, *visibility.shape))
     for layers in _blocks(*visibility.shape[:2]):
         deadline.check()
-        np.cumsum(visibility[layers], axis=2, out=result[layers])
+        np.cumsum(visibility[layers], axis=2, out=result[0, layers])
     return result
 
 
@@ -217,8 +216,8 @@ def _close_refused(roadmap: Roadmap, state: State, open_counts: IntArray) -> Non
             "no open edge at the start, but the roadmap has a path"
         )
     state.visibility[changed] *= state.open_edges[changed]
-    state.visibility_roulettes[changed] = np.cumsum(state.visibility[changed], axis=1)
-    state.roulette_cycles[changed] = -1
+    state.sums[0, changed] = np.cumsum(state.visibility[changed], axis=1)
+    state.sum_cycles[changed] = -1
 
 
 def _report(state: State, cycles: int) -> Cycle:
