@@ -54,15 +54,13 @@ class EdgeClearances:
 
         Args:
             band: the band.
-            edges: (m, w, w) the edges that matter.
+            edges: (m, w, w) the e edges that matter.
 
         Returns:
-            (m, w, w) [m], infinite on the other edges.
+            (e,) [m], in the order of `np.nonzero`.
         """
         layers, offsets, place = band.half_way(edges)
-        clearances = np.full(edges.shape, np.inf)
-        clearances[edges] = self._prover.half_way(layers, offsets)[place]
-        return clearances
+        return self._prover.half_way(layers, offsets)[place]
 
     def motion_objective(self, offsets: Array, clearances: Array) -> float:
         """F of the whole motion along a path; infinite if an edge is not proven free.

@@ -39,14 +39,10 @@ def neighbourhood(indices: IntArray, wide: bool) -> IntArray:
         if wide or size.bit_count() == 1
         for sign in (1, -1)
     ]
-    columns = []
-    for step in [*next_to, *far]:
-        target = indices - lowest + step
-        inside = np.all((target >= 0) & (target < shape), axis=1)
-        column = np.full(len(indices), -1, dtype=np.int64)
-        column[inside] = table[tuple(target[inside].T)]
-        columns.append(column)
-    return np.stack(columns, axis=1)
+    targets = (indices - lowest)[:, None] + np.array([*next_to, *far])
+    inside = np.all((targets >= 0) & (targets < shape), axis=2)
+    found = table[tuple(np.moveaxis(np.where(inside[..., None], targets, 0), 2, 0))]
+    return np.where(inside, found, -1)
 
 
 @kernel

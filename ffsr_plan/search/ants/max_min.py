@@ -171,8 +171,14 @@ class MaxMinAntSystem(LatticePlanner):
         result = np.empty((len(seen), n, n))
         for layers in _blocks(len(seen), n):
             deadline.check()
-            cost = np.maximum(edge_costs + seen[layers, None], 1e-12) / least
-            result[layers] = (1.0 / cost**2 if beta == 2.0 else cost**-beta) * open_edges[layers]
+            cost = np.add(edge_costs, seen[layers, None], out=result[layers])
+            np.maximum(cost, 1e-12, out=cost)
+            cost /= least
+            if beta == 2.0:
+                np.divide(1.0, np.square(cost, out=cost), out=cost)
+            else:
+                np.power(cost, -beta, out=cost)
+            cost *= open_edges[layers]
         return result
 
 
@@ -242,9 +248,16 @@ def _trails(state: State) -> Trails:
     found, heads = np.divmod(np.flatnonzero(state.walked.reshape(-1, n)[rows]), n)
     used = rows[found] * n + heads
     if len(used) > _MOST_TRAILS:
-        ants = state.walked.ravel()[used]
-        used = np.sort(used[np.argsort(-ants, kind="stable")[:_MOST_TRAILS]])
+        used = used[_largest(state.walked.ravel()[used], _MOST_TRAILS)]
     edges = np.unravel_index(used, state.walked.shape)
     layer, tail, head = edges
     level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]
     return Trails(layer, tail, head, state.walked[edges], state.laid[edges], level)
+
+
+def _largest(numbers: IntArray, count: int) -> IntArray:
+    """Where the `count` largest of more numbers are, the first among equals; in their order."""
+    least = np.partition(numbers, len(numbers) - count)[len(numbers) - count]
+    chosen, equal = numbers > least, np.flatnonzero(numbers == least)
+    chosen[equal[: count - np.count_nonzero(chosen)]] = True
+    return np.flatnonzero(chosen)
