@@ -255,9 +255,10 @@ class ObstacleQuery:
         shape_frame, ball_frame = self._shape_frame, self._ball_frame
         measures = [self._measures[i] for i in shape.tolist()]
         radii = self._tree.spheres[sphere, 3].tolist()
-        distances = []
+        distances, present = [], None
         for measure, radius, center in zip(measures, radii, local, strict=True):
-            ball.radius = radius
+            if radius != present:
+                ball.radius = present = radius
             ball_frame.setTranslation(center)
             result.clear()  # a new one would take longer than the measurement
             distances.append(measure(shape_frame, ball_frame, request, result))

@@ -73,5 +73,5 @@ class NodeClearances:
                 layers += first
                 self.bounds[layers, nodes] = self._evaluate(layers, self._lattice.offsets[nodes])
                 self.known[layers, nodes] = True
-            self._exact = frozen(np.where(np.isneginf(self.bounds), np.nan, self.bounds))
+            self._exact = frozen(np.where(self.bounds == -np.inf, np.nan, self.bounds))
         return self._exact

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.problem.objective import motion_objective, path_length
 from ffsr_plan.problem.problem import Problem
@@ -31,9 +31,22 @@ class EdgeClearances:
             offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
             clearances: (m + 1,) at the nodes [m].
         """
-        names, prover = [at.tobytes() for at in offsets], self._prover
+        names = [at.tobytes() for at in offsets]
         keys = [(i, names[i], names[i + 1]) for i in range(len(names) - 1)]
-        unknown = np.flatnonzero([key not in self._verdicts for key in keys])
+        unknown = np.array([i for i, key in enumerate(keys) if key not in self._verdicts], np.int64)
+        if len(unknown):
+            self._decide(unknown, [keys[i] for i in unknown.tolist()], offsets, clearances)
+        return [self._verdicts[key] for key in keys]
+
+    def _decide(
+        self,
+        unknown: IntArray,
+        keys: list[tuple[int, bytes, bytes]],
+        offsets: Array,
+        clearances: Array,
+    ) -> None:
+        """Keep verdicts on the k edges of a path that have none yet, under their keys."""
+        prover = self._prover
         tails, heads = offsets[unknown], offsets[unknown + 1]
         ends = np.stack([clearances[unknown], clearances[unknown + 1]], axis=1)
         sampled: list[Verdict | None] = [None] * len(unknown)
@@ -44,10 +57,9 @@ class EdgeClearances:
         for k, proof in zip(left, proofs, strict=True):
             before = sampled[k]
             sampled[k] = proof if before is None else _closer(proof, before)
-        for layer, verdict in zip(unknown.tolist(), sampled, strict=True):
+        for key, verdict in zip(keys, sampled, strict=True):
             assert verdict is not None
-            self._verdicts[keys[layer]] = verdict
-        return [self._verdicts[key] for key in keys]
+            self._verdicts[key] = verdict
 
     def half_way(self, band: OffsetBand, edges: Flags) -> Array:
         """Clearances half-way on edges of a band.

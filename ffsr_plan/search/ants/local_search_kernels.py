@@ -4,6 +4,8 @@ The neighbourhood of a path consists of all paths that are displaced from it, on
 independently, by one of a few steps: to the adjacent nodes, and to some farther along an axis. It
 contains every shift of every segment by such a step; a small shortest-path problem selects its best
 member.
+
+Edge costs are the same in both directions, bit for bit: rows are read for columns.
 """
 
 from __future__ import annotations
@@ -103,9 +105,9 @@ def _extend(
             if head < 0 or node_costs[i + 1, head] == np.inf:
                 continue
             if closed:
-                column = np.uint64(head)  # without a sign, indices need no check for one
+                row = np.uint64(head)  # without a sign, indices need no check for one
                 for a in range(counts[i]):
-                    least = min(least, costs[i, a] + edge_costs[np.uint64(nodes[i, a]), column])
+                    least = min(least, costs[i, a] + edge_costs[row, np.uint64(nodes[i, a])])
             else:
                 for a in range(counts[i]):
                     if open_edges[i, nodes[i, a], head]:
@@ -149,6 +151,11 @@ def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, open_edges
     for i in range(1, m):
         tail, now, head = path[i - 1], path[i], path[i + 1]
         present = edge_costs[tail, now] + node_costs[i, now] + edge_costs[now, head]
+        better = 0
+        for k in range(n):
+            better += edge_costs[tail, k] + node_costs[i, k] + edge_costs[head, k] < present
+        if better == 0:
+            continue
         best, choice = present, now
         for k in range(n):
             cost = edge_costs[tail, k] + node_costs[i, k] + edge_costs[k, head]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colon
 _LARGE_LAYER = 100  # nodes; from this size on pheromone lies on nodes, not on edges
 _EDGES_AT_ONCE = 300_000  # whose visibility is worked out between two looks at the deadline
 _MOST_TRAILS = 10_000  # edges whose trails are kept for pictures
-_MOST_CYCLES_PER_CHECK, _SECONDS_PER_CHECK = 16, 0.002  # between two looks at the deadline
+_MOST_CYCLES_PER_CHECK, _SECONDS_PER_CHECK = 64, 0.002  # between two looks at the deadline
 
 
 @settings
@@ -141,7 +141,7 @@ class MaxMinAntSystem(LatticePlanner):
             improved=self.improved,
             patience=float(patience),
             use_pheromone=self.pheromone,
-            tau=np.ones((m, rows, n)),
+            tau=np.empty((m, rows, n)),
             touched=np.zeros((m, rows), dtype=bool),
             sums=_sums(visibility, roadmap.deadline),
             sum_cycles=np.full((m, n), -1, dtype=np.int64),
@@ -240,18 +240,19 @@ def _report(state: State, cycles: int) -> Cycle:
 
 def _trails(state: State) -> Trails:
     """The most walked edges, in the order of layers and nodes."""
-    from ffsr_plan.search.ants.max_min_kernels import write_untouched_rows
+    from ffsr_plan.search.ants.max_min_kernels import LEVEL
 
-    write_untouched_rows(state)
     rows = np.flatnonzero(state.left)  # other rows have not even been given memory
     n = state.walked.shape[2]
-    found, heads = np.divmod(np.flatnonzero(state.walked.reshape(-1, n)[rows]), n)
+    found, heads = np.nonzero(state.walked.reshape(-1, n)[rows] > 0)
     used = rows[found] * n + heads
     if len(used) > _MOST_TRAILS:
         used = used[_largest(state.walked.ravel()[used], _MOST_TRAILS)]
     edges = np.unravel_index(used, state.walked.shape)
     layer, tail, head = edges
-    level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]
+    row = tail if state.tau.shape[1] > 1 else np.zeros_like(tail)
+    level, touched = np.full(len(used), state.values[LEVEL]), state.touched[layer, row]
+    level[touched] = state.tau[layer[touched], row[touched], head[touched]]
     return Trails(layer, tail, head, state.walked[edges], state.laid[edges], level)
 
 

@@ -29,7 +29,7 @@ class State(NamedTuple):
     """State of a colony: m edges a path, n nodes a layer, costs in units of length."""
 
     edge_costs: Array
-    """(n, n)"""
+    """(n, n), symmetric."""
     node_costs: Array
     """(m + 1, n), infinite where a node may not be entered."""
     open_edges: Flags
@@ -114,8 +114,8 @@ def _walk_together(s: State, first: int, count: int, draws: Array) -> None:
     """
     m, n, tau, visibility, sums = len(s.visibility), len(s.edge_costs), s.tau, s.visibility, s.sums
     paths, walked, left, touched, costs = s.paths, s.walked, s.left, s.touched, s.costs
-    edge_costs, node_costs, cycle = s.edge_costs, s.node_costs, s.counters[CYCLE]
-    by_edge, flat = tau.shape[1] > 1, sums.ravel()
+    edge_costs, node_costs, sum_cycles = s.edge_costs, s.node_costs, s.sum_cycles
+    cycle, by_edge, flat = s.counters[CYCLE], tau.shape[1] > 1, sums.ravel()
     begin, place = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
     goal = np.empty(count)
     for i in range(m):
@@ -123,12 +123,12 @@ def _walk_together(s: State, first: int, count: int, draws: Array) -> None:
             p = paths[first + k, i]
             row = p if by_edge else 0
             begin[k] = ((np.int64(touched[i, row]) * m + i) * n + p) * n
-            if touched[i, row] and s.sum_cycles[i, p] != cycle:
+            if touched[i, row] & (sum_cycles[i, p] != cycle):  # rare: one branch, not two
                 total = 0.0
                 for head in range(n):
                     total += tau[i, row, head] * visibility[i, p, head]
                     sums[1, i, p, head] = total
-                s.sum_cycles[i, p] = cycle
+                sum_cycles[i, p] = cycle
             goal[k] = draws[k, i] * flat[begin[k] + n - 1]
             place[k] = begin[k] - 1
         length = n  # of what is left of each row; what is sought is the first sum above the goal
