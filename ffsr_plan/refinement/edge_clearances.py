@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.problem.objective import motion_objective, path_length
 from ffsr_plan.problem.problem import Problem
@@ -34,18 +34,8 @@ class EdgeClearances:
         names = [at.tobytes() for at in offsets]
         keys = [(i, names[i], names[i + 1]) for i in range(len(names) - 1)]
         unknown = np.array([i for i, key in enumerate(keys) if key not in self._verdicts], np.int64)
-        if len(unknown):
-            self._decide(unknown, [keys[i] for i in unknown.tolist()], offsets, clearances)
-        return [self._verdicts[key] for key in keys]
-
-    def _decide(
-        self,
-        unknown: IntArray,
-        keys: list[tuple[int, bytes, bytes]],
-        offsets: Array,
-        clearances: Array,
-    ) -> None:
-        """Keep verdicts on the k edges of a path that have none yet, under their keys."""
+        if not len(unknown):
+            return [self._verdicts[key] for key in keys]
         prover = self._prover
         tails, heads = offsets[unknown], offsets[unknown + 1]
         ends = np.stack([clearances[unknown], clearances[unknown + 1]], axis=1)
@@ -57,9 +47,10 @@ class EdgeClearances:
         for k, proof in zip(left, proofs, strict=True):
             before = sampled[k]
             sampled[k] = proof if before is None else _closer(proof, before)
-        for key, verdict in zip(keys, sampled, strict=True):
+        for layer, verdict in zip(unknown.tolist(), sampled, strict=True):
             assert verdict is not None
-            self._verdicts[key] = verdict
+            self._verdicts[keys[layer]] = verdict
+        return [self._verdicts[key] for key in keys]
 
     def half_way(self, band: OffsetBand, edges: Flags) -> Array:
         """Clearances half-way on edges of a band.

@@ -81,7 +81,9 @@ def _lengths(problem: Problem, offsets: Array) -> Array:
     """(m, w, w) lengths of the edges between offsets (m + 1, w, 3) [length units]."""
     if len(offsets) > 4 and np.all(offsets[1:-1] == offsets[1]):  # the same on all inner layers
         first, inner, last = _lengths(problem, offsets[[0, 1, 2, -1]])
-        return np.concatenate([[first], np.broadcast_to(inner, (len(offsets) - 3, *inner.shape)), [last]])
+        return np.concatenate(
+            [[first], np.broadcast_to(inner, (len(offsets) - 3, *inner.shape)), [last]]
+        )
     lengths = np.zeros((len(offsets) - 1, offsets.shape[1], offsets.shape[1]))
     across = np.empty_like(lengths)
     for axis in range(3):

@@ -44,6 +44,15 @@ def test_clearance_changes_by_at_most_the_obstacles_motion(seed):
 
 
 @given(seeds)
+def test_a_distance_depends_on_none_that_was_measured_before(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    scene = random_scene(rng, low=-2, high=2)
+    many = np.array([random_configuration(robot, rng) for _ in range(8)])
+    at_once = ObstacleQuery(robot, scene).distances(many)
+    assert at_once.tolist() == [fp.clearance(robot, scene, q) for q in many]
+
+
+@given(seeds)
 def test_clearance_is_the_least_over_obstacles(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     scene = random_scene(rng, low=-2, high=2)

@@ -139,11 +139,11 @@ def _walk_together(s: State, first: int, count: int, draws: Array) -> None:
                 place[k] = middle if flat[np.uint64(middle)] <= goal[k] else place[k]
             length -= half
         for k in range(count):
-            p, head = np.uint64(paths[first + k, i]), np.uint64(place[k] + 1 - begin[k])
-            paths[first + k, i + 1] = head
-            walked[i, p, head] += 1
-            left[i, p] = True
-            costs[first + k] += edge_costs[p, head] + node_costs[i + 1, head]
+            tail, chosen = np.uint64(paths[first + k, i]), np.uint64(place[k] + 1 - begin[k])
+            paths[first + k, i + 1] = chosen
+            walked[i, tail, chosen] += 1
+            left[i, tail] = True
+            costs[first + k] += edge_costs[tail, chosen] + node_costs[i + 1, chosen]
 
 
 @kernel
