@@ -78,6 +78,7 @@ class ObstacleQuery:
         ]
         self._request = coal.DistanceRequest()
         sharpen(self._request)
+        self._result = coal.DistanceResult()
         self._shape_frame = coal.Transform3s.Identity()
         self._ball_frame = coal.Transform3s.Identity()
 
@@ -250,15 +251,17 @@ class ObstacleQuery:
 
         Centres are in the shape's frame, so that one ball and one placement serve all pairs.
         """
-        ball, request = self._ball, self._request
+        ball, request, result = self._ball, self._request, self._result
         shape_frame, ball_frame = self._shape_frame, self._ball_frame
         measures = [self._measures[i] for i in shape.tolist()]
         radii = self._tree.spheres[sphere, 3].tolist()
-        distances = []
+        distances, present = [], None
         for measure, radius, center in zip(measures, radii, local, strict=True):
-            ball.radius = radius
+            if radius != present:
+                ball.radius = present = radius
             ball_frame.setTranslation(center)
-            distances.append(measure(shape_frame, ball_frame, request, coal.DistanceResult()))
+            result.clear()  # a new one would take longer than the measurement
+            distances.append(measure(shape_frame, ball_frame, request, result))
         return np.array(distances)
 
     def _nearest_hull(

@@ -13,6 +13,8 @@ from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.proof.prover import Prover
 
+_NODES_AT_ONCE = 2000  # that are evaluated before they count as known
+
 
 class NodeClearances:
     """What is known of the clearance of each node.
@@ -64,10 +66,12 @@ class NodeClearances:
     def exact(self) -> Array:
         """(m + 1, n) clearances of all nodes [m]; NaN where a layer lacks a node."""
         if self._exact is None:
-            for i in range(1, self._lattice.divisions):
-                missing = np.flatnonzero(~self.known[i])
-                layers = np.full(len(missing), i)
-                self.bounds[i, missing] = self._evaluate(layers, self._lattice.offsets[missing])
-                self.known[i, missing] = True
-            self._exact = frozen(np.where(np.isneginf(self.bounds), np.nan, self.bounds))
+            stride = max(1, _NODES_AT_ONCE // self._lattice.size)
+            for first in range(1, self._lattice.divisions, stride):
+                end = min(first + stride, self._lattice.divisions)
+                layers, nodes = np.nonzero(~self.known[first:end])
+                layers += first
+                self.bounds[layers, nodes] = self._evaluate(layers, self._lattice.offsets[nodes])
+                self.known[layers, nodes] = True
+            self._exact = frozen(np.where(self.bounds == -np.inf, np.nan, self.bounds))
         return self._exact

@@ -22,6 +22,8 @@ from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.time_limit.deadline import Deadline
 
+_EDGES_AT_ONCE = 10_000  # that are looked at together
+
 
 class Roadmap:
     """Nodes and edges of a lattice with their clearances and states.
@@ -168,10 +170,13 @@ class Roadmap:
         """Mark the edges that the clearances at their ends prove free without a query."""
         prover, base_travel = self.prover, self.lattice.base_travel
         positive = np.where(self.admissible, self.clearances, np.nan)
-        for i in range(self.lattice.divisions):
+        others, stride = prover.speeds + prover.rounding, max(1, _EDGES_AT_ONCE // base_travel.size)
+        for first in range(0, self.lattice.divisions, stride):
             self.deadline.check()
-            travel = base_travel + (prover.speeds[i] + prover.rounding)
-            self.status[i][positive[i][:, None] + positive[i + 1] > travel] = FREE
+            some = slice(first, min(first + stride, self.lattice.divisions))
+            sums = positive[some, :, None] + positive[1:][some, None]
+            travel = base_travel + others[some, None, None]
+            np.copyto(self.status[some], FREE, where=sums > travel)
 
     def path_length(self, path: IntArray) -> float:
         """Length of a path.

@@ -68,7 +68,10 @@ def _cases() -> Iterator[tuple[Problem, Planner]]:
     yield _across("point", many), AntSystem(ants=2, cycles=2)
     yield _across("satellite_ur5", few), LatticeOptimum()
     with_lattice = _across("planar_dual_arm", few)
-    yield replace(with_lattice, lattice=None), TreePlanner(checks=100_000)
+    without = replace(with_lattice, lattice=None)
+    yield without, TreePlanner(checks=100_000)
+    turned = without.robot.configuration((10.0, 0.0, 0.0), attitude=(0.2, 0.0, 0.0))
+    yield replace(without, goal=turned, reach_attitude=True), TreePlanner(checks=20_000)
     yield (
         _across("planar_dual_arm", few, folding),
         PostureAnnealing(ants=2, cycles=2, annealing_shifts=20),

@@ -20,7 +20,7 @@ _BYTES_PER_NODE = 40
 _BYTES_PER_ANT = 40  # on each layer
 _BYTES_PER_COLONY, _BYTES_PER_TRAIL, _MOST_TRAILS = 20_000, 48, 10_000  # of its result
 _SECONDS_PER_PAIR = 2e-5  # distances of two links over an edge [s]
-_BYTES_PER_REFINED_EDGE = 120
+_BYTES_PER_REFINED_EDGE = 60
 _REFINED_OFFSETS = 5  # along each axis; see `refinement.refined_path`
 MOST_EDGES_AT_ONCE = 1_000_000
 """Edges of the first round of refinement at most."""

@@ -202,7 +202,7 @@ class Problem:
             return frozen(np.zeros(3))
         return frozen(self.goal[:3] - self.start[:3])
 
-    @property
+    @cached_property
     def joint_displacement(self) -> Array:
         """(nd,) change of the joint values [rad or m]; continuous joints take the shorter way."""
         return frozen(self.robot.joint_change(self.start, self.goal))
@@ -215,7 +215,7 @@ class Problem:
         vector = rotation_vector(self.start[3:7], self.goal[3:7])
         return float(np.linalg.norm(vector, axis=-1))
 
-    @property
+    @cached_property
     def straight_length(self) -> float:
         """Length of the straight way from start to goal [m]: weighted norm of what is prescribed.
 
@@ -227,7 +227,7 @@ class Problem:
         radians = np.append(joints[~slide], self.held_rotation) * self.rotation_weight
         return float(np.sqrt(np.sum(metres**2) + np.sum(radians**2)))
 
-    @property
+    @cached_property
     def delta_d(self) -> float:
         """Length of one layer's nominal step, Eq. 4 [m]."""
         return self.straight_length / self.given_lattice.divisions

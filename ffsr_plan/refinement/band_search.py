@@ -42,13 +42,14 @@ class BandSearch:
 
         self._problem, self._edges, self._band, self._clearances = problem, edges, band, clearances
         self._most = most * NO_GAIN
-        ends = np.minimum(clearances[:-1, :, None], clearances[1:, None])
-        self._costs: Array = band.lengths + nearness(problem, ends)
+        at_nodes = nearness(problem, clearances)
+        self._costs: Array = np.maximum(at_nodes[:-1, :, None], at_nodes[1:, None])
+        self._costs += band.lengths
         self._status: States = np.zeros(self._costs.shape, dtype=np.int8)
         if problem.delta > 0.0:
             wanted = promising(self._costs, self._most)
-            half_way = edges.half_way(band, wanted)
-            np.maximum(self._costs, band.lengths + nearness(problem, half_way), out=self._costs)
+            half_way = band.lengths[wanted] + nearness(problem, edges.half_way(band, wanted))
+            self._costs[wanted] = np.maximum(self._costs[wanted], half_way)
             self._status[~promising(self._costs, self._most)] = REFUSED
 
     def best_path(self, candidates: int) -> IntArray | None:

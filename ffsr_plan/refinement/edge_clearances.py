@@ -31,9 +31,12 @@ class EdgeClearances:
             offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
             clearances: (m + 1,) at the nodes [m].
         """
-        names, prover = [at.tobytes() for at in offsets], self._prover
+        names = [at.tobytes() for at in offsets]
         keys = [(i, names[i], names[i + 1]) for i in range(len(names) - 1)]
-        unknown = np.flatnonzero([key not in self._verdicts for key in keys])
+        unknown = np.array([i for i, key in enumerate(keys) if key not in self._verdicts], np.int64)
+        if not len(unknown):
+            return [self._verdicts[key] for key in keys]
+        prover = self._prover
         tails, heads = offsets[unknown], offsets[unknown + 1]
         ends = np.stack([clearances[unknown], clearances[unknown + 1]], axis=1)
         sampled: list[Verdict | None] = [None] * len(unknown)
@@ -54,15 +57,13 @@ class EdgeClearances:
 
         Args:
             band: the band.
-            edges: (m, w, w) the edges that matter.
+            edges: (m, w, w) the e edges that matter.
 
         Returns:
-            (m, w, w) [m], infinite on the other edges.
+            (e,) [m], in the order of `np.nonzero`.
         """
         layers, offsets, place = band.half_way(edges)
-        clearances = np.full(edges.shape, np.inf)
-        clearances[edges] = self._prover.half_way(layers, offsets)[place]
-        return clearances
+        return self._prover.half_way(layers, offsets)[place]
 
     def motion_objective(self, offsets: Array, clearances: Array) -> float:
         """F of the whole motion along a path; infinite if an edge is not proven free.

@@ -50,9 +50,7 @@ class OffsetBand:
             self.choices[end], self.present[end] = path[end], False
             self.present[end, 0] = True
         self.offsets: Array = self.choices @ unit
-        x, y, z = np.moveaxis(self.offsets[1:, None] - self.offsets[:-1, :, None], 3, 0)
-        across = np.sqrt(x**2 + y**2 + z**2) * problem.position_weight
-        self.lengths: Array = np.sqrt(problem.delta_d**2 + across**2) / problem.length_unit
+        self.lengths: Array = _lengths(problem, self.offsets)
 
     def half_way(self, edges: Flags) -> tuple[IntArray, Array, IntArray]:
         """The places half-way on edges.
@@ -69,7 +67,32 @@ class OffsetBand:
         """
         layer, tail, head = np.nonzero(edges)
         name = layer * self._sum_count + self._sums[tail, head]
-        _, first, place = np.unique(name, return_index=True, return_inverse=True)
-        layer, tail, head = layer[first], tail[first], head[first]
+        edge_at = np.full(len(edges) * self._sum_count, -1)
+        edge_at[name] = np.arange(len(name))
+        names = np.flatnonzero(edge_at >= 0)
+        one = edge_at[names]  # of the edges that pass there
+        edge_at[names] = np.arange(len(names))
+        layer, tail, head = layer[one], tail[one], head[one]
         sums = self.choices[layer, tail] + self.choices[layer + 1, head]
-        return layer, (sums / 2.0) @ self._unit, place
+        return layer, (sums / 2.0) @ self._unit, edge_at[name]
+
+
+def _lengths(problem: Problem, offsets: Array) -> Array:
+    """(m, w, w) lengths of the edges between offsets (m + 1, w, 3) [length units]."""
+    if len(offsets) > 4 and np.all(offsets[1:-1] == offsets[1]):  # the same on all inner layers
+        first, inner, last = _lengths(problem, offsets[[0, 1, 2, -1]])
+        return np.concatenate(
+            [[first], np.broadcast_to(inner, (len(offsets) - 3, *inner.shape)), [last]]
+        )
+    lengths = np.zeros((len(offsets) - 1, offsets.shape[1], offsets.shape[1]))
+    across = np.empty_like(lengths)
+    for axis in range(3):
+        np.subtract(offsets[1:, None, :, axis], offsets[:-1, :, None, axis], out=across)
+        lengths += np.square(across, out=across)
+    np.sqrt(lengths, out=lengths)
+    lengths *= problem.position_weight
+    np.square(lengths, out=lengths)
+    lengths += problem.delta_d**2
+    np.sqrt(lengths, out=lengths)
+    lengths /= problem.length_unit
+    return lengths

@@ -150,7 +150,7 @@ class _Descent:
         self._rim = np.array([a.half_count for a in axes]) * _FINEST
         sizes = np.sum(self.unit**2, axis=1)
         self.coordinates: IntArray = np.rint(offsets @ self.unit.T / sizes).astype(np.int64)
-        self._known: dict[int, float] = {}
+        self._names, self._known = np.zeros(0, dtype=np.int64), np.zeros(0)
         self.edges = EdgeClearances(lattice.problem, prover)
         self._queries_before, self._node_queries = prover.queries, 0
         self.clearances = np.array(clearances)
@@ -181,8 +181,8 @@ class _Descent:
             indices: (n, axes) offset of each node in the lattice's spacing.
         """
         layers, nodes = np.nonzero(known & (clearances > -np.inf))
-        names = self._names(layers, indices[nodes] * _FINEST)
-        self._known |= zip(names, clearances[layers, nodes].tolist(), strict=True)
+        names = self._named(layers, indices[nodes] * _FINEST)
+        self._keep(names, clearances[layers, nodes])
 
     def band(self, level: _Level) -> OffsetBand:
         """The offsets around the path; on the lattice itself, moved into the window."""
@@ -216,21 +216,31 @@ class _Descent:
     def measured(self, band: OffsetBand) -> Array:
         """(m + 1, w) clearances, -inf where an offset is not allowed; each measured once."""
         layers, nodes = np.nonzero(band.present)
-        names = self._names(layers, band.choices[layers, nodes])
-        missing = [k for k, name in enumerate(names) if name not in self._known]
-        if missing:
+        names = self._named(layers, band.choices[layers, nodes])
+        places = np.searchsorted(self._names, names)
+        missing = places == len(self._names)
+        missing[~missing] = self._names[places[~missing]] != names[~missing]
+        if np.any(missing):
             before = self._prover.queries
             at = band.offsets[layers[missing], nodes[missing]]
             found = self._prover.clearances(layers[missing], at)
             self._node_queries += self._prover.queries - before
-            self._known |= zip([names[k] for k in missing], found.tolist(), strict=True)
+            self._keep(names[missing], found)
+            places = np.searchsorted(self._names, names)
         clearances = np.full(band.present.shape, -np.inf)
-        clearances[layers, nodes] = [self._known[name] for name in names]
+        clearances[layers, nodes] = self._known[places]
         return clearances
 
-    def _names(self, layers: IntArray, offsets: IntArray) -> list[int]:
-        """One number for each layer (k,) and offset (k, axes)."""
+    def _named(self, layers: IntArray, offsets: IntArray) -> IntArray:
+        """(k,) one number for each layer (k,) and offset (k, axes)."""
         names = layers
         for column, rim in zip(offsets.T, self._rim, strict=True):
             names = names * (2 * rim + 1) + column + rim
-        return list(names.tolist())
+        return names
+
+    def _keep(self, names: IntArray, clearances: Array) -> None:
+        """Keep the clearances (k,) of offsets that were not known, by their names (k,)."""
+        names = np.concatenate([self._names, names])
+        order = np.argsort(names, kind="stable")
+        known = np.concatenate([self._known, clearances])
+        self._names, self._known = names[order], known[order]

@@ -44,6 +44,30 @@ def test_clearance_changes_by_at_most_the_obstacles_motion(seed):
 
 
 @given(seeds)
+def test_a_distance_depends_on_none_that_was_measured_before(seed):
+    robot, rng = random_robot(seed), np.random.default_rng(seed)
+    scene = random_scene(rng, low=-2, high=2)
+    many = np.array([random_configuration(robot, rng) for _ in range(8)])
+    at_once = ObstacleQuery(robot, scene).distances(many)
+    assert at_once.tolist() == [fp.clearance(robot, scene, q) for q in many]
+
+
+def test_the_distance_of_a_hull_depends_on_no_penetration_measured_before():
+    points = np.random.default_rng(0).normal(size=(60, 3))
+    mesh = "<collision><geometry><mesh filename='hull.stl'/></geometry></collision>"
+    robot = robot_from_urdf(
+        urdf(link("base", inertial(1.0, (1.0, 1.0, 1.0)), mesh)),
+        "made",
+        meshes={"hull.stl": points},
+    )
+    scene = fp.Scene([[0.0, 0.0, 0.0], [9.0, 0.0, 0.0]], [0.5, 0.2])
+    many = np.array([robot.configuration((x, 0.3, 0.1)) for x in (0.0, 5.0, 0.5, 9.0, 4.0)])
+    at_once = ObstacleQuery(robot, scene).distances(many)
+    assert at_once.min() < 0.0 < at_once.max()
+    assert at_once.tolist() == [fp.clearance(robot, scene, q) for q in many]
+
+
+@given(seeds)
 def test_clearance_is_the_least_over_obstacles(seed):
     robot, rng = random_robot(seed), np.random.default_rng(seed)
     scene = random_scene(rng, low=-2, high=2)

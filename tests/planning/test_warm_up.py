@@ -10,6 +10,8 @@ import ffsr_plan as fp
 
 PROGRAM = """
 import importlib, pkgutil, sys
+from contextlib import suppress
+from dataclasses import replace
 import ffsr_plan as fp
 from ffsr_plan.core.kernels.compilation import Kernel
 from ffsr_plan.display.figures import figure_files
@@ -24,6 +26,9 @@ fp.warm_up()
 before = known()
 for name in sys.argv[1:]:
     scenario = fp.Scenario.load(name)
+    if scenario.problem.reach_attitude:  # without a lattice by closed loops of the joints
+        with suppress(fp.PlanningError):
+            fp.plan(replace(scenario.problem, lattice=None), fp.TreePlanner(checks=20_000))
     quick = [fp.MaxMinAntSystem(ants=3, cycles=2), fp.AntSystem(ants=3, cycles=2)]
     if scenario.problem.lattice.postures:
         quick = [fp.PostureAnnealing(ants=3, cycles=2, annealing_shifts=3000)]

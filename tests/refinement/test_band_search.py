@@ -64,6 +64,21 @@ def test_every_edge_gets_the_place_half_way_on_it(two_axes, seed):
     assert len(np.unique(np.column_stack([layers, places.round(9)]), axis=0)) == len(places)
 
 
+@pytest.mark.parametrize("straight", [False, True])
+@given(seed=seeds)
+@settings(max_examples=10)
+def test_edges_are_as_long_as_equation_6_says(straight, seed):
+    band, edges = around(seed, 0.1, two_axes=True)
+    if straight:
+        path = np.zeros((6, 2), dtype=np.int64)
+        path[1:-1] = (1, -1)
+        unit = np.array([[0.0, 0.4, 0.0], [0.0, 0.0, 0.3]])
+        band = OffsetBand(edges._problem, path, np.full(2, 3), unit, 1, np.full(2, 1))
+    apart = np.linalg.norm(band.offsets[1:, None] - band.offsets[:-1, :, None], axis=3)
+    expected = np.hypot(edges._problem.delta_d, apart) / edges._problem.length_unit
+    assert band.lengths == pytest.approx(expected, rel=1e-14)
+
+
 @pytest.mark.parametrize("two_axes", [False, True])
 @given(seed=seeds, delta=st.sampled_from([0.0, 0.02, 0.5]))
 @settings(max_examples=8)

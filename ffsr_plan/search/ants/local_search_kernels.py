@@ -4,6 +4,8 @@ The neighbourhood of a path consists of all paths that are displaced from it, on
 independently, by one of a few steps: to the adjacent nodes, and to some farther along an axis. It
 contains every shift of every segment by such a step; a small shortest-path problem selects its best
 member.
+
+Edge costs are the same in both directions, bit for bit: rows are read for columns.
 """
 
 from __future__ import annotations
@@ -39,14 +41,10 @@ def neighbourhood(indices: IntArray, wide: bool) -> IntArray:
         if wide or size.bit_count() == 1
         for sign in (1, -1)
     ]
-    columns = []
-    for step in [*next_to, *far]:
-        target = indices - lowest + step
-        inside = np.all((target >= 0) & (target < shape), axis=1)
-        column = np.full(len(indices), -1, dtype=np.int64)
-        column[inside] = table[tuple(target[inside].T)]
-        columns.append(column)
-    return np.stack(columns, axis=1)
+    targets = (indices - lowest)[:, None] + np.array([*next_to, *far])
+    inside = np.all((targets >= 0) & (targets < shape), axis=2)
+    found = table[tuple(np.moveaxis(np.where(inside[..., None], targets, 0), 2, 0))]
+    return np.where(inside, found, -1)
 
 
 @kernel
@@ -64,34 +62,85 @@ def path_cost(path: IntArray, edge_costs: Array, node_costs: Array, open_edges: 
 def _best_neighbour(
     path: IntArray, edge_costs: Array, node_costs: Array, open_edges: Flags, table: IntArray
 ) -> float:
-    """Replace a path by the best one in its neighbourhood; return its cost."""
+    """Replace a path by the best one in its neighbourhood; return its cost.
+
+    The best one over all edges comes first, as few are closed; if it has no closed edge, it is the
+    best over the open ones too.
+    """
     m, width = len(path) - 1, table.shape[1]
     costs, nodes = np.empty((m + 1, width)), np.empty((m + 1, width), dtype=np.int64)
-    before = np.zeros((m + 1, width), dtype=np.int64)
-    costs[0, 0], nodes[0, 0], count = 0.0, path[0], 1
+    counts, found = np.empty(m + 1, dtype=np.int64), np.empty(m + 1, dtype=np.int64)
+    for closed in (True, False):
+        _extend(path, edge_costs, node_costs, open_edges, closed, table, costs, nodes, counts)
+        if counts[m] == 0:
+            return np.inf
+        if _trace(edge_costs, open_edges, closed, costs, nodes, counts, found):
+            path[:] = found
+            return float(costs[m, 0])
+    return np.inf
+
+
+@kernel
+def _extend(
+    path: IntArray,
+    edge_costs: Array,
+    node_costs: Array,
+    open_edges: Flags,
+    closed: bool,
+    table: IntArray,
+    costs: Array,
+    nodes: IntArray,
+    counts: IntArray,
+) -> None:
+    """Least costs of the nodes around a path, layer after layer; `closed` edges count or not.
+
+    The results are `nodes` (m + 1, w), their `costs`, and `counts` (m + 1,), how many are reached.
+    """
+    m, width = len(path) - 1, table.shape[1]
+    costs[0, 0], nodes[0, 0], counts[0] = 0.0, path[0], 1
     for i in range(m):
         reached = 0
         for b in range(width if i < m - 1 else 1):
-            head = table[path[i + 1], b]
+            head, least = table[path[i + 1], b], np.inf
             if head < 0 or node_costs[i + 1, head] == np.inf:
                 continue
-            least, choice = np.inf, 0
-            for a in range(count):
-                total = costs[i, a] + edge_costs[nodes[i, a], head]
-                if total < least and open_edges[i, nodes[i, a], head]:
-                    least, choice = total, a
+            if closed:
+                row = np.uint64(head)  # without a sign, indices need no check for one
+                for a in range(counts[i]):
+                    least = min(least, costs[i, a] + edge_costs[row, np.uint64(nodes[i, a])])
+            else:
+                for a in range(counts[i]):
+                    if open_edges[i, nodes[i, a], head]:
+                        least = min(least, costs[i, a] + edge_costs[nodes[i, a], head])
             if least < np.inf:
                 costs[i + 1, reached] = least + node_costs[i + 1, head]
-                nodes[i + 1, reached], before[i + 1, reached] = head, choice
+                nodes[i + 1, reached] = head
                 reached += 1
-        count = reached
-    if count == 0:
-        return np.inf
-    a = 0
-    for i in range(m, 0, -1):
-        path[i] = nodes[i, a]
-        a = before[i, a]
-    return float(costs[m, 0])
+        counts[i + 1] = reached
+
+
+@kernel
+def _trace(
+    edge_costs: Array,
+    open_edges: Flags,
+    closed: bool,
+    costs: Array,
+    nodes: IntArray,
+    counts: IntArray,
+    found: IntArray,
+) -> bool:
+    """The best path through the results of `_extend`; whether all its edges are open."""
+    m, all_open = len(found) - 1, True
+    found[m] = nodes[m, 0]
+    for i in range(m - 1, -1, -1):
+        head, least, choice = found[i + 1], np.inf, 0
+        for a in range(counts[i]):
+            total = costs[i, a] + edge_costs[nodes[i, a], head]
+            if total < least and (closed or open_edges[i, nodes[i, a], head]):
+                least, choice = total, a
+        found[i] = nodes[i, choice]
+        all_open &= open_edges[i, found[i], head]
+    return all_open
 
 
 @kernel
@@ -102,6 +151,11 @@ def _best_moves(path: IntArray, edge_costs: Array, node_costs: Array, open_edges
     for i in range(1, m):
         tail, now, head = path[i - 1], path[i], path[i + 1]
         present = edge_costs[tail, now] + node_costs[i, now] + edge_costs[now, head]
+        better = 0
+        for k in range(n):
+            better += edge_costs[tail, k] + node_costs[i, k] + edge_costs[head, k] < present
+        if better == 0:
+            continue
         best, choice = present, now
         for k in range(n):
             cost = edge_costs[tail, k] + node_costs[i, k] + edge_costs[k, head]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # numba takes its time: the kernels are imported when a colon
 _LARGE_LAYER = 100  # nodes; from this size on pheromone lies on nodes, not on edges
 _EDGES_AT_ONCE = 300_000  # whose visibility is worked out between two looks at the deadline
 _MOST_TRAILS = 10_000  # edges whose trails are kept for pictures
-_MOST_CYCLES_PER_CHECK, _SECONDS_PER_CHECK = 16, 0.002  # between two looks at the deadline
+_MOST_CYCLES_PER_CHECK, _SECONDS_PER_CHECK = 64, 0.002  # between two looks at the deadline
 
 
 @settings
@@ -134,7 +134,6 @@ class MaxMinAntSystem(LatticePlanner):
             open_edges=open_edges,
             status=roadmap.status,
             visibility=visibility,
-            visibility_roulettes=_summed(visibility, roadmap.deadline),
             near=neighbourhood(indices, wide=False),
             wide=neighbourhood(indices, wide=True),
             rho=self.rho,
@@ -142,10 +141,10 @@ class MaxMinAntSystem(LatticePlanner):
             improved=self.improved,
             patience=float(patience),
             use_pheromone=self.pheromone,
-            tau=np.ones((m, rows, n)),
+            tau=np.empty((m, rows, n)),
             touched=np.zeros((m, rows), dtype=bool),
-            roulettes=np.empty((m, n, n)),
-            roulette_cycles=np.full((m, n), -1, dtype=np.int64),
+            sums=_sums(visibility, roadmap.deadline),
+            sum_cycles=np.full((m, n), -1, dtype=np.int64),
             paths=np.full((self.ants, m + 1), roadmap.lattice.origin, dtype=np.int64),
             costs=np.empty(self.ants),
             searched=np.full(max(64, self.improved), np.inf),
@@ -172,8 +171,14 @@ class MaxMinAntSystem(LatticePlanner):
         result = np.empty((len(seen), n, n))
         for layers in _blocks(len(seen), n):
             deadline.check()
-            cost = np.maximum(edge_costs + seen[layers, None], 1e-12) / least
-            result[layers] = (1.0 / cost**2 if beta == 2.0 else cost**-beta) * open_edges[layers]
+            cost = np.add(edge_costs, seen[layers, None], out=result[layers])
+            np.maximum(cost, 1e-12, out=cost)
+            cost /= least
+            if beta == 2.0:
+                np.divide(1.0, np.square(cost, out=cost), out=cost)
+            else:
+                np.power(cost, -beta, out=cost)
+            cost *= open_edges[layers]
         return result
 
 
@@ -186,12 +191,12 @@ def _found(roadmap: Roadmap, rng: np.random.Generator, state: State) -> bool:
     return bool(np.isfinite(state.values[BEST]))
 
 
-def _summed(visibility: Array, deadline: Deadline) -> Array:
-    """(m, n, n) sums along the last axis."""
-    result = np.empty_like(visibility)
+def _sums(visibility: Array, deadline: Deadline) -> Array:
+    """(2, m, n, n) sums of visibility along the last axis, and room for those with pheromone."""
+    result = np.empty((2, *visibility.shape))
     for layers in _blocks(*visibility.shape[:2]):
         deadline.check()
-        np.cumsum(visibility[layers], axis=2, out=result[layers])
+        np.cumsum(visibility[layers], axis=2, out=result[0, layers])
     return result
 
 
@@ -217,8 +222,8 @@ def _close_refused(roadmap: Roadmap, state: State, open_counts: IntArray) -> Non
             "no open edge at the start, but the roadmap has a path"
         )
     state.visibility[changed] *= state.open_edges[changed]
-    state.visibility_roulettes[changed] = np.cumsum(state.visibility[changed], axis=1)
-    state.roulette_cycles[changed] = -1
+    state.sums[0, changed] = np.cumsum(state.visibility[changed], axis=1)
+    state.sum_cycles[changed] = -1
 
 
 def _report(state: State, cycles: int) -> Cycle:
@@ -235,17 +240,25 @@ def _report(state: State, cycles: int) -> Cycle:
 
 def _trails(state: State) -> Trails:
     """The most walked edges, in the order of layers and nodes."""
-    from ffsr_plan.search.ants.max_min_kernels import write_untouched_rows
+    from ffsr_plan.search.ants.max_min_kernels import LEVEL
 
-    write_untouched_rows(state)
     rows = np.flatnonzero(state.left)  # other rows have not even been given memory
     n = state.walked.shape[2]
-    found, heads = np.divmod(np.flatnonzero(state.walked.reshape(-1, n)[rows]), n)
+    found, heads = np.nonzero(state.walked.reshape(-1, n)[rows] > 0)
     used = rows[found] * n + heads
     if len(used) > _MOST_TRAILS:
-        ants = state.walked.ravel()[used]
-        used = np.sort(used[np.argsort(-ants, kind="stable")[:_MOST_TRAILS]])
+        used = used[_largest(state.walked.ravel()[used], _MOST_TRAILS)]
     edges = np.unravel_index(used, state.walked.shape)
     layer, tail, head = edges
-    level = state.tau[layer, tail if state.tau.shape[1] > 1 else 0, head]
+    row = tail if state.tau.shape[1] > 1 else np.zeros_like(tail)
+    level, touched = np.full(len(used), state.values[LEVEL]), state.touched[layer, row]
+    level[touched] = state.tau[layer[touched], row[touched], head[touched]]
     return Trails(layer, tail, head, state.walked[edges], state.laid[edges], level)
+
+
+def _largest(numbers: IntArray, count: int) -> IntArray:
+    """Where the `count` largest of more numbers are, the first among equals; in their order."""
+    least = np.partition(numbers, len(numbers) - count)[len(numbers) - count]
+    chosen, equal = numbers > least, np.flatnonzero(numbers == least)
+    chosen[equal[: count - np.count_nonzero(chosen)]] = True
+    return np.flatnonzero(chosen)

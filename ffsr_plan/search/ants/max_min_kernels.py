@@ -22,12 +22,14 @@ CYCLE, STALE, STAGE = 0, 1, 2
 # Slots of `values`: least F, that since the restart, mean F of the walks, level of untouched rows
 BEST, SINCE_RESTART, MEAN, LEVEL = 0, 1, 2, 3
 
+_ANTS_AT_ONCE = 64  # that walk together
+
 
 class State(NamedTuple):
     """State of a colony: m edges a path, n nodes a layer, costs in units of length."""
 
     edge_costs: Array
-    """(n, n)"""
+    """(n, n), symmetric."""
     node_costs: Array
     """(m + 1, n), infinite where a node may not be entered."""
     open_edges: Flags
@@ -36,8 +38,6 @@ class State(NamedTuple):
     """(m, n, n) what is proven of each edge."""
     visibility: Array
     """(m, n, n) eta^beta, zero on closed edges."""
-    visibility_roulettes: Array
-    """(m, n, n) its sums along the last axis: the roulettes of rows without pheromone."""
     near: IntArray
     """(n, w) displacements that local search tries on chosen ants."""
     wide: IntArray
@@ -56,10 +56,10 @@ class State(NamedTuple):
     """(m, n or 1, n) pheromone on edges, or on the nodes that they lead to."""
     touched: Flags
     """(m, n or 1) rows of tau on which pheromone was laid since the restart."""
-    roulettes: Array
-    """(m, n, n) sums of tau times visibility of touched rows."""
-    roulette_cycles: IntArray
-    """(m, n) cycle in which a roulette was made."""
+    sums: Array
+    """(2, m, n, n) sums along the last axis of visibility, and on touched rows of it times tau."""
+    sum_cycles: IntArray
+    """(m, n) cycle in which a touched row was summed up."""
     paths: IntArray
     """(ants, m + 1)"""
     costs: Array
@@ -88,45 +88,62 @@ class State(NamedTuple):
 
 @kernel
 def _walk(rng: np.random.Generator, s: State) -> None:
-    """All ants from start to goal, each row of weights summed up once a cycle at most.
+    """All ants from start to goal, some at a time, layer after layer.
+
+    On a layer no ant waits for another, and all read the same rows. Their numbers are drawn ant by
+    ant, so that a walk does not depend on how many walk at a time.
+    """
+    ants, m = len(s.paths), len(s.visibility)
+    draws = np.empty((min(ants, _ANTS_AT_ONCE), m))
+    s.costs[:] = 0.0
+    for first in range(0, ants, _ANTS_AT_ONCE):
+        count = min(_ANTS_AT_ONCE, ants - first)
+        for k in range(count):
+            for i in range(m):
+                draws[k, i] = rng.random()
+        _walk_together(s, first, count, draws)
+
+
+@kernel
+def _walk_together(s: State, first: int, count: int, draws: Array) -> None:
+    """Walks of `count` ants from `first` on, each row of weights summed up once a cycle at most.
 
     Where no pheromone was laid since the restart, all edges of a row have the same, and the row's
-    weights are those of visibility alone.
+    weights are those of visibility alone. The draws (count, m) are compared with the sums of all
+    ants' rows in turn, by halving, which the processor does for some ants at a time.
     """
-    m, n = s.visibility.shape[0], s.visibility.shape[1]
-    tau, touched, visibility, paths, walked = s.tau, s.touched, s.visibility, s.paths, s.walked
-    roulettes, visibility_roulettes, roulette_cycles = (
-        s.roulettes,
-        s.visibility_roulettes,
-        s.roulette_cycles,
-    )
-    edge_costs, node_costs = s.edge_costs, s.node_costs
-    by_edge = tau.shape[1] > 1
-    cycle = s.counters[CYCLE]
-    for ant in range(len(paths)):
-        cost = 0.0
-        p = paths[ant, 0]
-        for i in range(m):
+    m, n, tau, visibility, sums = len(s.visibility), len(s.edge_costs), s.tau, s.visibility, s.sums
+    paths, walked, left, touched, costs = s.paths, s.walked, s.left, s.touched, s.costs
+    edge_costs, node_costs, sum_cycles = s.edge_costs, s.node_costs, s.sum_cycles
+    cycle, by_edge, flat = s.counters[CYCLE], tau.shape[1] > 1, sums.ravel()
+    begin, place = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    goal = np.empty(count)
+    for i in range(m):
+        for k in range(count):
+            p = paths[first + k, i]
             row = p if by_edge else 0
-            roulette = roulettes[i, p] if touched[i, row] else visibility_roulettes[i, p]
-            if touched[i, row] and roulette_cycles[i, p] != cycle:
+            begin[k] = ((np.int64(touched[i, row]) * m + i) * n + p) * n
+            if touched[i, row] & (sum_cycles[i, p] != cycle):  # rare: one branch, not two
                 total = 0.0
-                for k in range(n):
-                    total += tau[i, row, k] * visibility[i, p, k]
-                    roulette[k] = total
-                roulette_cycles[i, p] = cycle
-            draw = rng.random() * roulette[n - 1]
-            low, length = 0, n  # the first k whose sum exceeds the draw
-            while length > 1:
-                half = length // 2
-                low += half * (roulette[low + half - 1] <= draw)
-                length -= half
-            paths[ant, i + 1] = low
-            walked[i, p, low] += 1
-            s.left[i, p] = True
-            cost += edge_costs[p, low] + node_costs[i + 1, low]
-            p = low
-        s.costs[ant] = cost
+                for head in range(n):
+                    total += tau[i, row, head] * visibility[i, p, head]
+                    sums[1, i, p, head] = total
+                sum_cycles[i, p] = cycle
+            goal[k] = draws[k, i] * flat[begin[k] + n - 1]
+            place[k] = begin[k] - 1
+        length = n  # of what is left of each row; what is sought is the first sum above the goal
+        while length > 1:
+            half = length // 2
+            for k in range(count):
+                middle = place[k] + half
+                place[k] = middle if flat[np.uint64(middle)] <= goal[k] else place[k]
+            length -= half
+        for k in range(count):
+            tail, chosen = np.uint64(paths[first + k, i]), np.uint64(place[k] + 1 - begin[k])
+            paths[first + k, i + 1] = chosen
+            walked[i, tail, chosen] += 1
+            left[i, tail] = True
+            costs[first + k] += edge_costs[tail, chosen] + node_costs[i + 1, chosen]
 
 
 @kernel

@@ -15,6 +15,8 @@ from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.lattice.edge_states import REFUSED
 from ffsr_plan.time_limit.deadline import Deadline
 
+_EDGES_AT_ONCE = 1_000_000  # that are looked at between two looks at the deadline
+
 
 def find_open_edges(
     admissible: Flags, status: States, deadline: Deadline | None = None
@@ -24,17 +26,22 @@ def find_open_edges(
     Raises:
         OutOfTime: at the deadline.
     """
-    open_edges = np.empty(status.shape, dtype=bool)
-    open_counts = np.empty(status.shape[:2], dtype=np.int64)
-    alive = np.ones(admissible.shape[1], dtype=bool)
-    for layer in range(len(open_edges) - 1, -1, -1):
+    m, n = status.shape[:2]
+    open_edges, open_counts = np.empty(status.shape, dtype=bool), np.empty((m, n), dtype=np.int64)
+    stride = max(1, _EDGES_AT_ONCE // n**2)
+    for first in range(0, m, stride):
         if deadline is not None:
             deadline.check()
-        own = open_edges[layer]
-        np.logical_and(admissible[layer, :, None], admissible[layer + 1] & alive, out=own)
-        own &= status[layer] != REFUSED
-        open_counts[layer] = np.count_nonzero(own, axis=1)
-        alive = open_counts[layer] > 0
+        some = slice(first, min(first + stride, m))
+        own = np.not_equal(status[some], REFUSED, out=open_edges[some])
+        own &= admissible[some, :, None]
+        own &= admissible[1:][some, None]
+        open_counts[some] = np.count_nonzero(own, axis=2)
+    for layer in range(m - 2, -1, -1):
+        dead = admissible[layer + 1] & (open_counts[layer + 1] == 0)
+        if dead.any():
+            open_edges[layer][:, dead] = False
+            open_counts[layer] = np.count_nonzero(open_edges[layer], axis=1)
     return open_edges, open_counts
 
 

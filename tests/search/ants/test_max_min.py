@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import product
 
 import numpy as np
 import pytest
@@ -15,7 +16,14 @@ import ffsr_plan as fp
 from ffsr_plan.lattice.edge_states import REFUSED
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
-from ffsr_plan.search.ants.local_search_kernels import improve, neighbourhood, path_cost
+from ffsr_plan.search.ants.local_search_kernels import (
+    _best_neighbour,
+    improve,
+    neighbourhood,
+    path_cost,
+)
+from ffsr_plan.search.ants.max_min import _close_refused, _largest
+from ffsr_plan.search.ants.max_min_kernels import CYCLE, DONE, run_cycles
 from ffsr_plan.search.ants.open_edges import close_refused, find_open_edges
 from tests.helpers.brute_force import optimum
 from tests.helpers.urdf_builders import random_scene
@@ -119,6 +127,66 @@ def test_local_search_improves_and_respects_closed_edges():
         assert after == pytest.approx(roadmap.objective(trial), rel=1e-12)
         improved += after < before
     assert improved > 40
+
+
+@given(seeds)
+@settings(max_examples=40)
+def test_the_best_displaced_path_equals_brute_force_over_open_edges(seed):
+    rng, m, n = np.random.default_rng(seed), 4, 5
+    edge_costs = rng.uniform(1.0, 2.0, (n, n))
+    edge_costs += edge_costs.T
+    node_costs = rng.uniform(0.0, 1.0, (m + 1, n))
+    node_costs[rng.random(node_costs.shape) < 0.1] = np.inf
+    node_costs[[0, -1]] = 0.0
+    open_edges = rng.random((m, n, n)) < rng.choice([0.5, 0.9, 1.0])
+    table = neighbourhood(np.arange(n)[:, None], wide=False)
+    path = rng.integers(0, n, m + 1)
+    near = [[k for k in table[p] if k >= 0] for p in path]
+    ends = [[path[0]], *near[1:-1], [path[-1]]]
+    around = [np.array(nodes) for nodes in product(*ends)]
+    least = min(path_cost(p, edge_costs, node_costs, open_edges) for p in around)
+    before = path.copy()
+    found = _best_neighbour(path, edge_costs, node_costs, open_edges, table)
+    assert found == pytest.approx(least, rel=1e-12)
+    if found == np.inf:
+        assert np.array_equal(path, before)
+    else:
+        assert found == pytest.approx(path_cost(path, edge_costs, node_costs, open_edges))
+
+
+@pytest.mark.parametrize("lattice", [fp.Lattice(20, fp.Axis(10, 0.3)), fp.Lattice(
+    5, fp.Axis(5, 0.3), fp.Axis(5, 0.3))], ids=["by edge", "by node"])  # fmt: skip
+def test_ants_walk_by_the_roulette_of_pheromone_times_visibility(lattice):
+    """More ants than walk together, beside walks node by node with the same random numbers."""
+    roadmap = Roadmap(random_problem(3, 0.1, lattice))
+    state, open_counts = fp.MaxMinAntSystem(ants=70, cycles=9, improved=0)._prepared(roadmap)
+    rng, m = np.random.default_rng(5), lattice.divisions
+    for cycle in range(9):
+        numbers = np.random.default_rng()
+        numbers.bit_generator.state = rng.bit_generator.state
+        tau, touched = state.tau.copy(), state.touched.copy()
+        done = run_cycles(rng, cycle + 1, state) == DONE
+        for path in state.paths:
+            for i in range(m):
+                p = path[i]
+                row = p if tau.shape[1] > 1 else 0
+                pheromone = tau[i, row] if touched[i, row] else 1.0
+                sums = np.cumsum(pheromone * state.visibility[i, p])
+                draw = numbers.random() * sums[-1]
+                assert path[i + 1] == np.searchsorted(sums, draw, side="right")
+        while not done:
+            if not roadmap.prove_path(state.candidate):
+                _close_refused(roadmap, state, open_counts)
+            done = run_cycles(rng, cycle + 1, state) == DONE
+    assert state.counters[CYCLE] == 9
+    assert state.touched.any()
+
+
+@given(st.lists(st.integers(0, 5), min_size=3, max_size=30), st.data())
+def test_of_equally_walked_edges_the_first_ones_are_kept(numbers, data):
+    numbers, count = np.array(numbers), data.draw(st.integers(1, len(numbers) - 1))
+    expected = np.sort(np.argsort(-numbers, kind="stable")[:count])
+    assert np.array_equal(_largest(numbers, count), expected)
 
 
 def test_neighbourhoods_hold_displacements_along_the_axes():
