@@ -50,18 +50,31 @@ def test_a_goal_that_is_not_the_first_is_reached_where_that_touches(robot, tmp_p
 
 
 def test_each_goal_has_its_own_attitude_to_arrive_at(robot):
-    start, mode = robot.neutral(), "free-flying"
-    first = robot.configuration((2.5, 0.0, 0.0), (0.4, 0.0, 0.0), {"left_1": 0.5})
-    other = robot.configuration((2.5, 0.0, 0.0), (-0.3, 0.0, 0.0), {"left_1": -0.9})
-    scene = fp.Scene([hand(robot, first)], [0.1])
+    """The nearest one demands an attitude that takes many loops, the other where arms lead."""
+    start = robot.neutral()
+    near = robot.configuration((2.5, 0.0, 0.0), (1.5, 0.0, 0.0), {"left_1": 0.3})
+    bent = robot.configuration((2.5, 0.0, 0.0), joints={"left_1": -0.9})
+    ends = np.array([[0.0, 0.0, 0.0], [2.5, 0.0, 0.0]])
+    other = fp.Motion(robot, "free-flying", start, bent, ends).configurations()[-1]
+    problem = fp.Problem(robot, fp.Scene(), start, near, reach_attitude=True, alternatives=[other])
+    plan = fp.plan(problem, fp.TreePlanner(checks=100_000), until="first")
+    assert np.array_equal(plan.problem.goal, other)
+    assert plan.arrival_attitude_error < 1e-8
+    assert plan.length == pytest.approx(np.hypot(2.5, 0.9))
+    assert plan.verify().ok
+
+
+def test_a_straight_way_to_a_goal_farther_off_does_not_end_the_search(robot):
+    ends = [robot.configuration((2.5, 0, 0), joints={"left_1": value}) for value in (0.5, -1.7)]
+    middle = robot.configuration((1.25, 0, 0), joints={"left_1": 0.25})
+    scene = fp.Scene([hand(robot, middle) + np.array([0.0, 0.08, 0.0])], [0.03])
     problem = fp.Problem(
-        robot, scene, start, first, mode, reach_attitude=True, alternatives=[other]
+        robot, scene, robot.neutral(), ends[0], "attitude-held", alternatives=[ends[1]]
     )
-    for until in ("first", "end"):
-        plan = fp.plan(problem, fp.TreePlanner(checks=200_000), until=until)
-        assert np.array_equal(plan.problem.goal, other)
-        assert plan.arrival_attitude_error < 1e-8
-        assert plan.verify().ok
+    assert fp.clearance(robot, scene, middle) < 0.0
+    plan = fp.plan(problem, QUICK)
+    assert np.array_equal(plan.problem.goal, ends[0])
+    assert plan.length < np.hypot(2.5, 1.7)
 
 
 def test_more_goals_do_not_make_plans_longer():
