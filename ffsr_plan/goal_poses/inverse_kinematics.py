@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -9,6 +12,7 @@ from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import whole_number
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.goal_poses.cause_of_failure import explained
+from ffsr_plan.goal_poses.pose_error import PoseTarget
 from ffsr_plan.goal_poses.pose_out_of_reach import PoseOutOfReach
 from ffsr_plan.goal_poses.pose_solutions import PoseSearch
 from ffsr_plan.goal_poses.pose_target import pose_target
@@ -76,10 +80,8 @@ def inverse_kinematics(
         base_attitude=base_attitude,
     )
     rng = np.random.default_rng(whole_number("seed", seed, at_least=0))
-    try:
+    with _causes(target):
         return PoseSearch(frame, target, scene, rng).first()
-    except PoseOutOfReach as error:
-        raise explained(error, target) from None
 
 
 def goals_at_pose(
@@ -129,7 +131,14 @@ def goals_at_pose(
     )
     rng = np.random.default_rng(whole_number("seed", seed, at_least=0))
     count = whole_number("tries", tries, at_least=1, at_most=MOST_TRIES)
-    try:
+    with _causes(target):
         return PoseSearch(frame, target, scene, rng).several(count)
+
+
+@contextmanager
+def _causes(target: PoseTarget) -> Iterator[None]:
+    """An error for a pose out of reach says why."""
+    try:
+        yield
     except PoseOutOfReach as error:
         raise explained(error, target) from None
