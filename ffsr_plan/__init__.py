@@ -13,16 +13,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ffsr_plan import errors
     from ffsr_plan.collision.clearance import Clearance, clearance
     from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
-    from ffsr_plan.core import errors
     from ffsr_plan.core.contacts import Contact
     from ffsr_plan.core.errors import (
         AttitudeOutOfReach,
         FfsrPlanError,
         GoalInCollision,
         GoalPoseIgnored,
-        HeldBase,
         IntegrationError,
         InternalError,
         InvalidInput,
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
         PathNotFound,
         PlanningError,
         PlanNotVerified,
-        PoseOutOfReach,
         StartInCollision,
         UncheckedLinks,
         UnprovenPath,
@@ -44,13 +42,19 @@ if TYPE_CHECKING:
     from ffsr_plan.dynamics.inverse_dynamics import States
     from ffsr_plan.dynamics.motion import Motion
     from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
+    from ffsr_plan.goal_poses.inverse_kinematics import inverse_kinematics
+    from ffsr_plan.goal_poses.pose_out_of_reach import (
+        ArmReach,
+        HeldBase,
+        JointBeyond,
+        PoseOutOfReach,
+    )
     from ffsr_plan.lattice.certificate import Certificate, Counts
     from ffsr_plan.lattice.layered_lattice import LayeredLattice
     from ffsr_plan.lattice.roadmap import Roadmap
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.planning.plan_and_refine import plan, refine
     from ffsr_plan.planning.warm_up import warm_up
-    from ffsr_plan.problem.end_effector_goal import inverse_kinematics
     from ffsr_plan.problem.lattice_settings import Axis, Lattice
     from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
     from ffsr_plan.problem.problem import Problem
@@ -89,6 +93,7 @@ if TYPE_CHECKING:
 __version__ = "0.2.0.dev0"
 __all__ = [
     "AntSystem",
+    "ArmReach",
     "AttitudeOutOfReach",
     "Axis",
     "Balanced",
@@ -109,6 +114,7 @@ __all__ = [
     "IntegrationError",
     "InternalError",
     "InvalidInput",
+    "JointBeyond",
     "Lattice",
     "LatticeOptimum",
     "LayeredLattice",
@@ -180,7 +186,6 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "FfsrPlanError",
         "GoalInCollision",
         "GoalPoseIgnored",
-        "HeldBase",
         "IntegrationError",
         "InternalError",
         "InvalidInput",
@@ -189,7 +194,6 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "PathNotFound",
         "PlanNotVerified",
         "PlanningError",
-        "PoseOutOfReach",
         "StartInCollision",
         "UncheckedLinks",
         "UnprovenPath",
@@ -201,13 +205,14 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "dynamics.inverse_dynamics": ("States",),
     "dynamics.motion": ("Motion",),
     "dynamics.wheel_momentum": ("WheelMomentum",),
+    "goal_poses.inverse_kinematics": ("inverse_kinematics",),
+    "goal_poses.pose_out_of_reach": ("ArmReach", "HeldBase", "JointBeyond", "PoseOutOfReach"),
     "lattice.certificate": ("Certificate", "Counts"),
     "lattice.layered_lattice": ("LayeredLattice",),
     "lattice.roadmap": ("Roadmap",),
     "planning.certified_plan": ("Plan",),
     "planning.plan_and_refine": ("plan", "refine"),
     "planning.warm_up": ("warm_up",),
-    "problem.end_effector_goal": ("inverse_kinematics",),
     "problem.lattice_settings": ("Axis", "Lattice"),
     "problem.posture_axes": ("PostureAxis", "PostureTarget"),
     "problem.problem": ("Problem",),
@@ -244,7 +249,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names}
 _MODULES = {
-    "errors": "core.errors",
+    "errors": "errors",
     "generators": "scene.generators",
     "momentum": "dynamics.momentum",
 }

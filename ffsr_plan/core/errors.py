@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields, is_dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
-from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.contacts import (
     Contact,
     approach,
@@ -108,7 +107,7 @@ class _InCollision(PlanningError):
         text = f"{self.configuration} in collision: {contact_list(contacts)}"
         if self.goal_contacts:
             text += f"; the goal is in collision too: {contact_list(self.goal_contacts)}"
-        return text + _helping(self.advice)
+        return text + helping(self.advice)
 
 
 class StartInCollision(_InCollision):
@@ -171,7 +170,7 @@ class NoPath(PlanningError):
         return (
             f"no path on this lattice: layer {self.layer} of {self.divisions} cannot be passed "
             f"(closed by {' and '.join(filter(None, causes)) or 'the limits of the lattice'})"
-            + _helping(self.advice or ("wider or additional lattice axes",))
+            + helping(self.advice or ("wider or additional lattice axes",))
         )
 
 
@@ -224,71 +223,7 @@ class OutOfTime(PlanningError):
         end = (
             "Ctrl-C" if math.isinf(self.time_limit) else f"the time_limit of {self.time_limit:g} s"
         )
-        return f"no path was proven free before {end} ended {self.stage}" + _helping(self.advice)
-
-
-class HeldBase(NamedTuple):
-    """What a robot reaches from the place of its base if wheels hold the start's attitude.
-
-    Attributes:
-        reached: whether it reaches the wanted pose.
-        rotation: angle by which the reaction turns a base that is not held, on the straight way to
-            the joint values at which the pose is reached or missed least [rad].
-        position_missed: by how much the frame then misses the wanted position [m]; where the pose
-            is not reached, by how much the held one does.
-    """
-
-    reached: bool
-    rotation: float
-    position_missed: float
-
-
-@dataclass(eq=False, repr=False)
-class PoseOutOfReach(PlanningError):
-    """No joint values were found that bring a frame to the wanted pose.
-
-    Attributes:
-        frame: name of the frame.
-        position_missed: distance from the wanted position at the best configuration [m].
-        attitude_missed: angle from the wanted attitude there [rad]; None if any is allowed.
-        configuration: (nq,) the configuration of the least error, in which one metre counts as
-            much as one radian.
-        held_base: what a base that wheels hold would reach; None if they do hold it.
-        without_attitude: whether the position alone is reached; None if no attitude is wanted.
-        advice: what may help.
-    """
-
-    frame: str
-    position_missed: float
-    attitude_missed: float | None
-    configuration: Array
-    held_base: HeldBase | None = None
-    without_attitude: bool | None = None
-    advice: tuple[str, ...] = ()
-
-    def message(self) -> str:
-        """The errors of the best configuration, and what may help."""
-        angle = ""
-        if self.attitude_missed is not None:
-            degrees = math.degrees(self.attitude_missed)
-            angle = f" and {self.attitude_missed:.4g} rad ({degrees:.3g} degrees)"
-        return (
-            f"pose out of reach: the best configuration for frame '{self.frame}' misses it by "
-            f"{self.position_missed:.4g} m{angle}{self._of_held_base()}"
-            + _helping(self.advice or ("another base position or attitude",))
-        )
-
-    def _of_held_base(self) -> str:
-        held = self.held_base
-        if held is None:
-            return ""
-        if not held.reached:
-            return f"; a held base misses it as well, by {held.position_missed:.4g} m"
-        return (
-            "; it is within reach of a held base, but on the way there the reaction turns the base "
-            f"by {math.degrees(held.rotation):.3g} degrees and takes the frame "
-            f"{held.position_missed:.4g} m away"
-        )
+        return f"no path was proven free before {end} ended {self.stage}" + helping(self.advice)
 
 
 @dataclass(eq=False, repr=False)
@@ -319,7 +254,7 @@ class UnprovenPath(PlanningError):
             f"no path was found that could be proven free: between layers {self.layer - 1} and "
             f"{self.layer} of {self.divisions}, link '{self.link}' {approach(self.distance)} "
             f"{obstacle_name(self.obstacle, self.source)}"
-            + _helping(self.advice or ("other posture axes",))
+            + helping(self.advice or ("other posture axes",))
         )
 
 
@@ -356,7 +291,7 @@ class PathNotFound(PlanningError):
         if self.contact is not None:
             link, obstacle, depth, source = self.contact
             text += f", with link '{link}' {-depth:.3g} m from {obstacle_name(obstacle, source)}"
-        return text + _helping(self.advice)
+        return text + helping(self.advice)
 
 
 @dataclass(eq=False, repr=False)
@@ -395,5 +330,6 @@ class PlanNotVerified(PlanningError):
         return "the plan does not verify: " + "; ".join(self.problems)
 
 
-def _helping(advice: tuple[str, ...]) -> str:
+def helping(advice: tuple[str, ...]) -> str:
+    """The end of a message that says what may help; empty without advice."""
     return f"; what may help: {'; '.join(advice)}" if advice else ""

@@ -83,7 +83,7 @@ def plan(
         WorkerDied: a worker process ended without a result.
     """
     watch, deadline = Stopwatch(), _deadline(time_limit)
-    chosen = _planner_for(problem, planner)
+    chosen, problem = _planner_for(problem, planner)
     rng, seed_number = _generator(seed)
     request = _request(chosen, refine, colonies, workers, until, on_cycle)
     request = request._replace(deadline=deadline)
@@ -182,21 +182,27 @@ def _deadline(time_limit: float | None) -> Deadline:
     return Deadline(math.inf if time_limit is None else number("time_limit", time_limit, above=0.0))
 
 
-def _planner_for(problem: Problem, planner: Planner | str | None) -> Planner:
-    """The planner, after a check that it can solve the problem."""
+def _planner_for(problem: Problem, planner: Planner | str | None) -> tuple[Planner, Problem]:
+    """The planner, after a check that it can solve the problem, and the problem as it sees it.
+
+    On a lattice that is the problem without alternative goals.
+    """
     if not isinstance(problem, Problem):
         raise InvalidInput("problem", problem, "a Problem (that of a scenario is scenario.problem)")
     chosen = planner_of(planner, problem)
     chosen.refuse(problem)
-    return chosen
+    if problem.lattice is not None:
+        problem = problem.ending_at(problem.goal)
+    return chosen, problem
 
 
 def _certified(
     problem: Problem, planner: Planner, seed: int | None, watch: Stopwatch, solution: Solution
 ) -> Plan:
     """The plan of a solution; `watch` was started when it was asked for."""
+    end = solution.motion.configurations()[-1]
     return Plan(
-        problem=problem,
+        problem=problem.ending_at(end),
         planner=planner,
         seed=seed,
         seconds=watch.computing,

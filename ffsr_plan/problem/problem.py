@@ -2,82 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ffsr_plan.collision.contacts import contacts
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import finite_array
-from ffsr_plan.core.contacts import contact_list
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
-from ffsr_plan.core.rotations import rotation_vector, to_angles
-from ffsr_plan.core.setting_rules import InstanceOf, Number, Rule, Truth, Vector
+from ffsr_plan.core.rotations import angle_between, rotation_vector, to_angles
+from ffsr_plan.core.setting_rules import InstanceOf, Number, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
 from ffsr_plan.dynamics.actuation_mode import Mode
+from ffsr_plan.goal_poses.descent import DESCENTS
+from ffsr_plan.goal_poses.inverse_kinematics import goals_at_pose
 from ffsr_plan.problem.base_window import Window, default_window
-from ffsr_plan.problem.end_effector_goal import inverse_kinematics
+from ffsr_plan.problem.configuration_rules import Configuration, Configurations, ModeName
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
 _LEAST, _LARGEST = 1e-9, 1e9  # of weights and units: no product of them overflows
 _FARTHEST_TRAVEL = 500.0  # [rad or m] of a joint; the reaction is worked out every 0.025
+_SAME_ATTITUDE = 1e-9  # [rad]
 _SAME = 1e-12  # metres or radians by which two positions or joint values may differ and be equal
-
-
-@dataclass(frozen=True)
-class Configuration(Rule):
-    """A configuration of the robot in the field `robot`: (nq,), within the joint limits."""
-
-    def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
-        """See `Rule.check`."""
-        if "robot" not in others:  # refused already
-            return value
-        robot: SpaceRobot = others["robot"]
-        try:
-            return robot.check_configuration(what, value)  # type: ignore[arg-type]
-        except InvalidInput as error:
-            touching = _touching(robot, others.get("scene", Scene()), what, value)
-            if not touching:
-                raise
-            allowed = f"{error.allowed}; at these values, {touching}"
-            raise InvalidInput(error.what, error.value, allowed) from None
-
-
-def _touching(robot: SpaceRobot, scene: Scene, what: str, value: object) -> str:
-    """What touches at a configuration with joint values outside their limits.
-
-    Obstacles count at the start only: where the base is at the goal depends on the mode.
-    """
-    try:
-        q = np.array(finite_array(what, value, (robot.model.nq,)))  # type: ignore[arg-type]
-    except InvalidInput:
-        return ""
-    size = float(np.linalg.norm(q[3:7]))
-    if size <= 0.5:
-        return ""
-    q[3:7] /= size
-    found = contacts(robot, scene if what == "start" else Scene(), q)
-    return contact_list(found) if found else ""
-
-
-@dataclass(frozen=True)
-class ModeName(Rule):
-    """A mode, or its name."""
-
-    def check(self, what: str, value: object, others: Mapping[str, Any]) -> Mode:
-        """See `Rule.check`."""
-        return Mode.parse(what, value)
-
-    def json_schema(self) -> dict[str, Any]:
-        """See `Rule.json_schema`."""
-        return {"type": "string", "enum": [mode.value for mode in Mode]}
 
 
 @settings
@@ -116,6 +66,10 @@ class Problem:
             of the world that start and goal do not differ along.
         min_clearance: distance [m] from all obstacles that is kept, as proven as that nothing is
             touched. Clearances of plans, and those in F, count beyond it.
+        alternatives: (A, nq) further goals, any of which may be reached instead; at the same base
+            position where thrusters move it, and attitude where wheels hold it. `TreePlanner` takes
+            the one whose path costs least, planners on a lattice take `goal`. The problem of a plan
+            has the goal that was reached, and no alternatives.
 
     Raises:
         InvalidInput: naming the field, its value and what is allowed.
@@ -136,6 +90,7 @@ class Problem:
     reach_attitude: Annotated[bool, Truth()] = False
     window: Annotated[Given[Array | None, ArrayLike | None], Window()] = setting(default=None)
     min_clearance: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 0.0
+    alternatives: Annotated[Given[Array, ArrayLike], Configurations()] = setting(default=())
 
     def __post_init__(self) -> None:
         self._check_travel()
@@ -143,6 +98,7 @@ class Problem:
         self._check_displacement()
         self._check_window()
         self._check_clearance()
+        self._check_alternatives()
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{name}={value}" for name, value in self._summary())
@@ -152,30 +108,42 @@ class Problem:
         return html_table("Problem", dict(self._summary()))
 
     def reaching(
-        self, frame: str, position: ArrayLike, attitude: ArrayLike | None = None, *, seed: int = 0
+        self,
+        frame: str,
+        position: ArrayLike,
+        attitude: ArrayLike | None = None,
+        *,
+        seed: int = 0,
+        tries: int = DESCENTS,
     ) -> Problem:
-        """The same problem with a goal at which a frame has the wanted pose.
+        """The same problem with goals at which a frame has the wanted pose.
 
         As far as the mode prescribes the base pose, it is that of the present goal. On a lattice
         with posture axes, or without a lattice, the base has to arrive at the attitude that belongs
         to the pose. See `inverse_kinematics`.
+
+        Several joint values that meet the pose and touch nothing are looked for. Those clear of
+        obstacles by 5 cm come first, the nearest to the start before others. The first are the
+        `goal`, the others, at most 7, the `alternatives`.
 
         Args:
             frame: name of a link, joint or other frame of the model.
             position: (3,) wanted for the frame's origin, world [m].
             attitude: (3,) wanted for the frame, ZYX angles [rad]; None if any will do.
             seed: a whole number >= 0.
+            tries: joint values from which the pose is approached: those of the start, and random
+                ones.
 
         Raises:
             InvalidInput: an argument that is not allowed.
-            PoseOutOfReach: no joint values were found; with the error of the best ones.
+            PoseOutOfReach: no joint values were found; with the error of the best ones, and why.
             GoalInCollision: all joint values found are in collision.
 
         Returns:
             The new problem; this one does not change.
         """
         held = self.mode.has_wheels
-        goal = inverse_kinematics(
+        goals = goals_at_pose(
             self.robot,
             self.obstacles,
             frame,
@@ -186,9 +154,33 @@ class Problem:
             base_position=None if self.mode.floats else self.goal[:3],
             base_attitude=to_angles(self.goal[3:7]) if held else None,
             seed=seed,
+            tries=tries,
         )
         turns = self.lattice is None or bool(self.lattice.postures)
-        return replace(self, goal=goal, reach_attitude=turns and not held)
+        return replace(
+            self, goal=goals[0], alternatives=goals[1:], reach_attitude=turns and not held
+        )
+
+    @property
+    def goals(self) -> Array:
+        """(1 + A, nq) the goal and its alternatives."""
+        return frozen(np.vstack([self.goal, self.alternatives]))
+
+    def ending_at(self, q: ArrayLike) -> Problem:
+        """The same problem with one goal: of all of them, the one nearest to a configuration.
+
+        Args:
+            q: (nq,) configuration, such as the end of a motion.
+        """
+        if not len(self.alternatives):
+            return self
+        end = self.robot.check_configuration("q", q)
+        apart = [
+            float(np.linalg.norm(self.robot.joint_change(end, goal)))
+            + float(angle_between(end[3:7], goal[3:7])) * self.reach_attitude
+            for goal in self.goals
+        ]
+        return replace(self, goal=self.goals[int(np.argmin(apart))], alternatives=())
 
     @cached_property
     def obstacles(self) -> Scene:
@@ -254,10 +246,8 @@ class Problem:
 
     def _check_travel(self) -> None:
         """Raise `InvalidInput` for joints that travel so far that the reaction takes too long."""
+        self._check_way("goal", self.goal)
         allowed = f"at most {_FARTHEST_TRAVEL:g} rad or m"
-        for name, change in zip(self.robot.joint_names, self.joint_displacement, strict=True):
-            if abs(change) > _FARTHEST_TRAVEL:
-                raise InvalidInput(f"goal (joint {name}, travel)", float(change), allowed)
         begin = self.robot.joint_values(self.start)
         for k, axis in enumerate(self.lattice.postures if self.lattice else ()):
             way = float(np.max(np.abs(axis.displacement(self.robot, begin)), initial=0.0))
@@ -311,6 +301,26 @@ class Problem:
         if self.min_clearance > most:
             allowed = f"at most {most:g} m, with the largest obstacle"
             raise InvalidInput("min_clearance", self.min_clearance, allowed)
+
+    def _check_alternatives(self) -> None:
+        """Raise `InvalidInput` for alternatives that prescribe another base pose, or go too far."""
+        for k, goal in enumerate(self.alternatives):
+            if self.mode.has_thrusters and np.abs(goal[:3] - self.goal[:3]).max() > _SAME:
+                allowed = f"the base position of the goal, {self.goal[:3].tolist()}"
+                raise InvalidInput(f"alternatives.{k}, base position", goal[:3].tolist(), allowed)
+            angle = float(angle_between(goal[3:7], self.goal[3:7]))
+            if self.mode.has_wheels and angle > _SAME_ATTITUDE:
+                allowed = "the base attitude of the goal, where wheels hold it"
+                raise InvalidInput(f"alternatives.{k}, base attitude", goal[3:7].tolist(), allowed)
+            self._check_way(f"alternatives.{k}", goal)
+
+    def _check_way(self, what: str, goal: Array) -> None:
+        """Raise `InvalidInput` for joints that travel so far that the reaction takes too long."""
+        travel = self.robot.joint_change(self.start, goal)
+        for name, change in zip(self.robot.joint_names, travel, strict=True):
+            if abs(change) > _FARTHEST_TRAVEL:
+                allowed = f"at most {_FARTHEST_TRAVEL:g} rad or m"
+                raise InvalidInput(f"{what} (joint {name}, travel)", float(change), allowed)
 
     def _summary(self) -> list[tuple[str, str]]:
         """Names and values for representations."""

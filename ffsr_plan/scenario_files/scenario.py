@@ -120,13 +120,16 @@ def _scenario(file: ScenarioFile, folder: Path) -> Scenario:
     base_goal = start[:3] if base_stays else file.goal.base_position
     scene = _scene(file, folder, [start[:3], base_goal])
     with _in_table("goal"):
-        goal = file.goal.configuration(robot, scene, start, mode)
+        kept = file.objective.min_clearance
+        around = scene.grown(kept) if kept > 0.0 else scene
+        goals = file.goal.configurations(robot, around, start, mode)
     demanded = file.goal.attitude is not None or file.goal.end_effector is not None
     problem = Problem(
         robot,
         scene,
         start=start,
-        goal=goal,
+        goal=goals[0],
+        alternatives=goals[1:],
         mode=mode,
         lattice=file.lattice,
         window=None if file.window is None else [file.window.low, file.window.high],

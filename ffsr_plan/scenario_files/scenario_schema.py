@@ -15,9 +15,11 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import NamedNumbers, Numbers, OneOf, Text, WholeNumber
 from ffsr_plan.core.settings import part_of, setting, settings
 from ffsr_plan.dynamics.actuation_mode import Mode
-from ffsr_plan.problem.end_effector_goal import inverse_kinematics
+from ffsr_plan.goal_poses.descent import DESCENTS
+from ffsr_plan.goal_poses.inverse_kinematics import MOST_TRIES, goals_at_pose
+from ffsr_plan.problem.configuration_rules import ModeName
 from ffsr_plan.problem.lattice_settings import Lattice
-from ffsr_plan.problem.problem import ModeName, Problem
+from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.collision_shapes import CONTAINERS
 from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.robots.robot import SpaceRobot
@@ -115,12 +117,14 @@ class EndEffectorTable:
         position: (3,) wanted for the frame's origin, world [m].
         attitude: (3,) ZYX angles wanted for the frame [rad]; any attitude is accepted without it.
         seed: of the random numbers of inverse kinematics.
+        tries: joint values from which it approaches the pose.
     """
 
     frame: Annotated[str, Text("the name of a frame")]
     position: Position
     attitude: Angles | None = None
     seed: Annotated[int, WholeNumber()] = 0
+    tries: Annotated[int, WholeNumber(at_least=1, at_most=MOST_TRIES)] = DESCENTS
 
 
 @settings
@@ -161,8 +165,8 @@ class GoalTable:
         """(3,) prescribed ZYX angles of the base [rad]."""
         return np.zeros(3) if self.attitude is None else self.attitude
 
-    def configuration(self, robot: SpaceRobot, scene: Scene, start: Array, mode: Mode) -> Array:
-        """(nq,) goal configuration, by inverse kinematics where a pose is given.
+    def configurations(self, robot: SpaceRobot, scene: Scene, start: Array, mode: Mode) -> Array:
+        """(G, nq) goal configuration; several, by inverse kinematics, where a pose is given.
 
         Args:
             robot: the robot.
@@ -177,9 +181,9 @@ class GoalTable:
         wanted = self.end_effector
         if wanted is None:
             joints = joint_values(robot, self.posture, self.joints)
-            return robot.configuration(self.base_position, self.base_attitude, joints)
+            return robot.configuration(self.base_position, self.base_attitude, joints)[None]
         try:
-            return inverse_kinematics(
+            return goals_at_pose(
                 robot,
                 scene,
                 wanted.frame,
@@ -190,6 +194,7 @@ class GoalTable:
                 base_position=self.base_position if mode.has_thrusters else None,
                 base_attitude=self.base_attitude if mode.has_wheels else None,
                 seed=wanted.seed,
+                tries=wanted.tries,
             )
         except InvalidInput as error:
             raise InvalidInput(f"end_effector.{error.what}", error.value, error.allowed) from None

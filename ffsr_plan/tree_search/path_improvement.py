@@ -22,6 +22,7 @@ from ffsr_plan.tree_search.kernels.layered_search import (
 from ffsr_plan.tree_search.kernels.path_cost import path_cost
 from ffsr_plan.tree_search.kernels.path_moves import PathMemory, improve, thin
 from ffsr_plan.tree_search.kernels.random_numbers import RandomState
+from ffsr_plan.tree_search.kernels.search_arrays import SearchArrays
 from ffsr_plan.tree_search.restarts import CHUNK
 from ffsr_plan.tree_search.search_space import SearchSpace
 
@@ -35,6 +36,7 @@ class ImprovedPath:
     """A path through the configuration space, flown, and what it costs.
 
     Attributes:
+        problem: the problem with the goal that the path leads to.
         last: its last corner.
         cost: see `path_cost` [m].
     """
@@ -56,6 +58,8 @@ class ImprovedPath:
         """
         self._expired = expired
         self._space, self.last = space, len(states) - 1
+        self._goal = space.goal_at(states[-1])
+        self.problem = space.problems[self._goal]
         room = max(len(states), LAYERS + 2) + _ROOM
         if space.problem.reach_attitude:
             room += _ROOM_FOR_LOOPS
@@ -68,6 +72,12 @@ class ImprovedPath:
         self._weigh()
 
     @property
+    def _arrays(self) -> SearchArrays:
+        """Those of the space, with the attitude to arrive at that belongs to the path's goal."""
+        self._space.aim_at(self._goal)
+        return self._space.arrays
+
+    @property
     def states(self) -> Array:
         """(k, D) corners."""
         return self._memory.states[0, : self.last + 1].copy()
@@ -77,7 +87,7 @@ class ImprovedPath:
         end, tried = self._until(checks), np.zeros(1, dtype=np.int64)
         while tried[0] >= 0 and self._goes_on(end):
             stop = min(self._until(CHUNK), end)
-            self.last = thin(self._space.arrays, self._memory, self.last, tried, stop)
+            self.last = thin(self._arrays, self._memory, self.last, tried, stop)
         self._weigh()
 
     def move(self, random: RandomState, checks: int) -> None:
@@ -90,13 +100,13 @@ class ImprovedPath:
         end = self._until(checks)
         while self._goes_on(end):
             stop = min(self._until(CHUNK), end)
-            self.last = improve(self._space.arrays, self._memory, self.last, random, _SPREAD, stop)
+            self.last = improve(self._arrays, self._memory, self.last, random, _SPREAD, stop)
         self._weigh()
 
     @property
     def missed(self) -> float:
         """Angle by which it misses the attitude that is demanded [rad], or 0."""
-        setup = self._space.arrays.setup[0]
+        setup = self._arrays.setup[0]
         if setup["missed_weight"] == 0.0:
             return 0.0
         return float(angle_between(self._memory.attitudes[0, self.last], setup["goal"]))
@@ -108,7 +118,7 @@ class ImprovedPath:
             if self.last + LOOP_CORNERS >= self._memory.states.shape[1]:
                 break
             stop = min(self._until(CHUNK), end)
-            self.last = insert_loops(self._space.arrays, self._memory, self.last, random, stop)
+            self.last = insert_loops(self._arrays, self._memory, self.last, random, stop)
         self._weigh()
 
     def straighten(self, random: RandomState, checks: int) -> None:
@@ -128,7 +138,7 @@ class ImprovedPath:
 
         What has to be kept away from may have changed since the path was flown.
         """
-        space, memory = self._space.arrays, self._memory
+        space, memory = self._arrays, self._memory
         reached = fly_path(space, memory.states[0], memory.attitudes[0], 0, self.last)
         if reached == self.last:
             self._weigh()
@@ -142,7 +152,7 @@ class ImprovedPath:
         return bool(np.max(np.linalg.norm(first - second, axis=1)) < _AS_ONE)
 
     def _search(self, random: RandomState, cost: float, checks: int) -> bool:
-        arrays, memory = self._space.arrays, self._memory
+        arrays, memory = self._arrays, self._memory
         layers, last, end = _layers(memory.states.shape[2]), GOING_ON, self._until(checks)
         lay_out(arrays, memory, self.last, random, layers)
         while last == GOING_ON and self._goes_on(end):
@@ -161,7 +171,7 @@ class ImprovedPath:
 
     def _weigh(self) -> None:
         memory = self._memory
-        arrays = self._space.arrays
+        arrays = self._arrays
         self.cost = float(path_cost(arrays, memory.states[0], memory.attitudes[0], self.last))
 
 

@@ -64,7 +64,8 @@ def prove(space: SearchSpace, corners: Array, deadline: Deadline) -> PathProof:
     Raises:
         OutOfTime: by the deadline.
     """
-    problem, states = space.problem, cut(space, corners)
+    states = cut(space, corners)
+    problem = space.problems[space.goal_at(states[-1])]
     if problem.reach_attitude:
         states = _turned(problem, states, deadline)
     turns = None

@@ -17,6 +17,7 @@ from ffsr_plan.problem.free_objective import (
     least_objective,
     stations,
 )
+from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import Branches, History, Solution
 from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.kernels.trees import Trees
@@ -35,12 +36,14 @@ class ProvenPath(NamedTuple):
     """A path that is proven free.
 
     Attributes:
+        problem: the problem with the goal that it leads to.
         proof: of all its edges.
         motion: the motion along it.
         length: L [m].
         objective: F [length units].
     """
 
+    problem: Problem
     proof: PathProof
     motion: Motion
     length: float
@@ -104,7 +107,7 @@ class ProvenPaths:
             return False
         if proof.missed > _MISSED:
             return False
-        problem, motion = self._space.problem, proof.motion
+        problem, motion = path.problem, proof.motion
         lengths = edge_lengths(problem, motion)
         clearances = ObstacleQuery(problem.robot, problem.obstacles).distances(
             motion.at(*stations(lengths))
@@ -112,7 +115,7 @@ class ProvenPaths:
         length = float(lengths.sum())
         value = free_objective(problem, length, clearances)
         if self.best is None or value < self.best.objective:
-            self.best = ProvenPath(proof, motion, length, value)
+            self.best = ProvenPath(problem, proof, motion, length, value)
         return True
 
     def note(self, new: float, ways: int) -> None:
@@ -132,8 +135,9 @@ class ProvenPaths:
             trees: those of the last search, for pictures.
             interrupted: whether time limit or Ctrl-C ended the search.
         """
-        best, problem = self.best, self._space.problem
+        best = self.best
         assert best is not None
+        problem = best.problem
         still = np.zeros((best.motion.edges + 1, 3))
         before = best.proof.prover.queries
         self._deadline.close()

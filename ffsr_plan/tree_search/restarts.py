@@ -149,20 +149,21 @@ class Restarts:
         """Trees that consist of their roots."""
         space, start = self._space, self._space.start
         capacity = min(max(_FIRST_NODES, self._left // _CHECKS_A_NODE), _MOST_NODES)
+        roots = max(self._roots + len(space.problem.alternatives), len(space.goals))
         trees = Trees(
             np.zeros((2, capacity, len(start))),
             np.zeros((2, capacity, 4)),
             np.full((2, capacity), -1, dtype=np.int64),
-            np.zeros(max(self._roots, len(space.goals)), dtype=np.int64),
+            np.zeros(roots, dtype=np.int64),
             np.zeros(5, dtype=np.int64),
         )
         trees.states[0, 0], trees.attitudes[0, 0] = start, space.problem.start[3:7]
         trees.counts[0] = 1
         arrival = np.zeros(4)
-        for goal in space.goals:
+        for goal, problem in zip(space.goals, space.problems, strict=True):
             fly(space.arrays, start, trees.attitudes[0, 0], goal, arrival, False)
-            if space.problem.reach_attitude:
-                arrival = space.problem.goal[3:7].copy()
+            if problem.reach_attitude:
+                arrival[:] = problem.goal[3:7]
             plant(trees, goal, arrival)
         return trees
 

@@ -56,8 +56,7 @@ class SearchRounds:
         Raises:
             StartInCollision, GoalInCollision: see `TreePlanner.solve`.
         """
-        check_ends(problem)
-        self.space = SearchSpace(problem, settings.margin)
+        self.space = SearchSpace(check_ends(problem), settings.margin)
         self._deadline, self._ways = monitor.deadline or Deadline(), settings.ways
         searching, self._random = rng.spawn(1)[0], random_state(rng)
         self._restarts = Restarts(
@@ -115,13 +114,13 @@ class SearchRounds:
         """Whether the straight way is proven free and no path can cost less."""
         space, arrival = self.space, np.zeros((2, 4))
         arrival[0] = space.problem.start[3:7]
-        for goal in space.goals:
+        for k, goal in enumerate(space.goals):
             if fly(space.arrays, space.start, arrival[0], goal, arrival[1], True) == 1.0:
                 path = self._path(np.stack([space.start, goal]), arrival)
                 if path.missed > ENOUGH:
-                    return False
+                    continue
                 self._paths.append(path)
-                return self._prove(path) and space.problem.delta == 0.0
+                return self._prove(path) and k == 0 and space.problem.delta == 0.0
         return False
 
     def _search(self, end: int, first: bool) -> float:

@@ -39,8 +39,9 @@ class SearchSpace:
     Attributes:
         problem: the problem.
         start: (D,) state at the start.
-        goals: (G, D) states at the goal, one for each way round of the continuous joints, the
+        goals: (G, D) states at the goals, one for each way round of the continuous joints, the
             nearest first.
+        problems: (G) the problem with the one goal of each of them.
         turn: (3,) rotation vector from the start's attitude to the goal's, base axes [rad]; zero
             where the attitude reacts.
         arrays: robot, scene and settings for kernels.
@@ -61,7 +62,7 @@ class SearchSpace:
         self.start: Array = np.zeros(JOINTS + robot.nd)
         self.start[:3] = problem.start[:3]
         self.start[JOINTS:] = robot.joint_values(problem.start)
-        self.goals = self._goals()
+        self.goals, self.problems = self._goals()
         self.arrays = SearchArrays(
             bodies=robot.bodies,
             links=base_at_rest(records(LINK_STATE, len(robot.bodies))),
@@ -103,25 +104,49 @@ class SearchSpace:
         setup["checks"] = 0
         self.arrays = arrays._replace(pairs=arrays.pairs[~near])
 
-    def _goals(self) -> Array:
-        problem, robot = self.problem, self.problem.robot
+    def goal_at(self, state: Array) -> int:
+        """The number of the goal at a state (D,)."""
+        return int(np.argmin(np.sum((self.goals - state) ** 2, axis=1)))
+
+    def aim_at(self, goal: int) -> None:
+        """Have paths arrive at the attitude of a goal, where that is demanded.
+
+        Args:
+            goal: its number.
+        """
+        self.arrays.setup[0]["goal"] = self.problems[goal].goal[3:7]
+
+    def _goals(self) -> tuple[Array, tuple[Problem, ...]]:
+        """States at the goals, and their problems: at least one state for each goal."""
+        firsts, others = [], []
+        for each in self.problem.goals:
+            problem = self.problem.ending_at(each)
+            ways = [(self._length(state), state, problem) for state in self._ways_to(problem)]
+            ways.sort(key=lambda way: way[0])
+            firsts.append(ways[0])
+            others += ways[1:]
+        others.sort(key=lambda way: way[0])
+        chosen = firsts + others[: max(0, _MOST_GOALS - len(firsts))]
+        chosen.sort(key=lambda way: way[0])
+        return np.array([way[1] for way in chosen]), tuple(way[2] for way in chosen)
+
+    def _length(self, state: Array) -> float:
+        """Squared change of the joints from the start to a state (D,)."""
+        return float(np.sum((state - self.start)[JOINTS:] ** 2))
+
+    def _ways_to(self, problem: Problem) -> list[Array]:
+        """(D,) states at the goal of a problem, for each way round of the continuous joints."""
         goal = self.start.copy()
         goal[:3] += problem.base_displacement
         goal[TURN] = float(np.linalg.norm(self.turn))
         change = problem.joint_displacement
-        free = np.isinf(robot.upper)
+        free = np.isinf(problem.robot.upper)
         other = np.where(change > 0.0, change - 2.0 * np.pi, change + 2.0 * np.pi)
         ways = [
             (own, there) if wide else (own,)
             for own, there, wide in zip(change, other, free, strict=True)
         ]
-        goals = []
-        for steps in product(*ways):
-            each = goal.copy()
-            each[JOINTS:] += steps
-            goals.append(each)
-        lengths = [float(np.sum((each - self.start)[JOINTS:] ** 2)) for each in goals]
-        return np.array([goals[k] for k in np.argsort(lengths, kind="stable")[:_MOST_GOALS]])
+        return [goal + np.append(np.zeros(JOINTS), steps) for steps in product(*ways)]
 
     def _box(self) -> Array:
         problem, robot = self.problem, self.problem.robot

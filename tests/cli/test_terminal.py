@@ -4,10 +4,10 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from ffsr_plan import errors
 from ffsr_plan.cli import planning
 from ffsr_plan.cli.commands import app
 from ffsr_plan.cli.terminal import errors_on_stderr
-from ffsr_plan.core import errors
 
 
 def leave(error):

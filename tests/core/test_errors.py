@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.core import errors
+from ffsr_plan import errors
 from ffsr_plan.core.checks import unknown_name
 from ffsr_plan.core.contacts import Contact
 from ffsr_plan.core.formatting import nearest_name

@@ -108,7 +108,8 @@ def calls(plan, tmp_path_factory):
                                 "mode": "attitude-held", "base_position": None,
                                 "base_attitude": None, "seed": 0},
         problem.reaching: {"frame": "left_3", "position": [2.0, 1.0, 0], "attitude": None,
-                           "seed": 0},
+                           "seed": 0, "tries": 2},
+        problem.ending_at: {"q": q},
         fp.momentum.connection: {"robot": robot, "q": q},
         fp.momentum.attitude_rate_map: {"robot": robot, "q": q},
         fp.momentum.generalized_jacobian: {"robot": robot, "q": q, "frame": "left_3"},
@@ -186,7 +187,7 @@ def test_the_interface_is_covered(calls):
     made_by_the_package = {
         "Branches", "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof",
         "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement",
-        "Report",
+        "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
         "SearchResult", "Solution", "SpaceRobot",

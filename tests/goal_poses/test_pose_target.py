@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ffsr_plan.dynamics.actuation_mode import Mode
-from ffsr_plan.problem.end_effector_goal import pose_target
-from ffsr_plan.problem.pose_error import end_configuration, pose_error, pose_jacobian
+from ffsr_plan.goal_poses.pose_error import end_configuration, pose_error, pose_jacobian
+from ffsr_plan.goal_poses.pose_target import pose_target
 from tests.helpers.frame_poses import angles_of, some_goal
 
 seeds = st.integers(0, 100_000)

@@ -130,6 +130,27 @@ def pose_jacobian(target: PoseTarget, begin: Array, change: Array) -> Array:
         beyond = _base_rotation_derivative(robot, begin, change) - connection(robot, q)
         rotation = matrix(q[3:7]) @ beyond
         jacobian += np.vstack([-pin.skew(lever) @ rotation, rotation])
+    return _of_error(target, pose, jacobian)
+
+
+def held_jacobian(target: PoseTarget, q: Array) -> Array:
+    """Derivative of `pose_error` by the joint values on a base that does not move.
+
+    Args:
+        target: gives the frame and its wanted pose.
+        q: (nq,) configuration, of which joint limits need not hold.
+
+    Returns:
+        (3, nd) or (6, nd).
+    """
+    model = target.robot.model
+    data, axes = model.createData(), pin.LOCAL_WORLD_ALIGNED
+    whole = pin.computeFrameJacobian(model, data, q, target.frame, axes)
+    return _of_error(target, _frame_pose(target, q), np.array(whole[:, 6:]))
+
+
+def _of_error(target: PoseTarget, pose: pin.SE3, jacobian: Array) -> Array:
+    """A Jacobian (6, nd) of the frame's velocity as that of the pose error."""
     if target.rotation is None:
         return jacobian[:3]
     # from angular velocity to the rate of the rotation vector

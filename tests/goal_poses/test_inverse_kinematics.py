@@ -12,38 +12,12 @@ from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core.rotations import to_angles
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.robots.loading import robot_from_urdf
 from tests.helpers.frame_poses import angles_of, pose_of, some_goal
-from tests.helpers.urdf_builders import (
-    box,
-    inertial,
-    joint,
-    link,
-    sphere,
-    urdf,
-)
+from tests.helpers.planar_arm import FORE, SHOULDER, UPPER, planar_arm
 
 seeds = st.integers(0, 100_000)
-UPPER, FORE, SHOULDER = 0.7, 0.5, 0.3
 TIP = "right_link_3"
 FOLDED_IN = {"right_1": -1.7, "right_2": 1.3, "right_3": 1.7}  # the arm is in its own base
-
-
-def planar_arm(base_mass):
-    """Two links in the world's xy-plane, shoulder `SHOULDER` ahead of the base's centre."""
-    rod = (0.001, 0.02, 0.02)
-    return robot_from_urdf(
-        urdf(
-            link("base", inertial(base_mass, (base_mass / 6.0,) * 3), box((0.3, 0.3, 0.3))),
-            link("upper", inertial(2.0, rod, (UPPER / 2, 0, 0)), sphere(0.03, (UPPER / 2, 0, 0))),
-            link("fore", inertial(1.0, rod, (FORE / 2, 0, 0)), sphere(0.03, (FORE / 2, 0, 0))),
-            link("tool", inertial(0.1, (0.001,) * 3), sphere(0.02)),
-            joint("shoulder", "revolute", "base", "upper", (SHOULDER, 0, 0)),
-            joint("elbow", "revolute", "upper", "fore", (UPPER, 0, 0)),
-            joint("wrist", "revolute", "fore", "tool", (FORE, 0, 0)),
-        ),
-        "planar_arm",
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize("mode", list(Mode))
