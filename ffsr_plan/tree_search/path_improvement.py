@@ -126,7 +126,7 @@ class ImprovedPath:
         end = self._until(checks)
         while self._goes_on(end):
             stop = min(self._until(CHUNK), end)
-            self.last = straighten(self._space.arrays, self._memory, self.last, random, stop)
+            self.last = straighten(self._arrays, self._memory, self.last, random, stop)
         self._weigh()
 
     def search_around(self, random: RandomState, checks: int) -> bool:

@@ -119,13 +119,15 @@ def test_a_turn_on_the_spot_is_as_short_as_on_a_lattice_made_for_it(robot, degre
 def bent_path(name, scene=None):
     """A path with random corners, flown, on the way to the attitude at which it arrives."""
     robot, rng = fp.load_robot(name), np.random.default_rng(3)
-    space = SearchSpace(replace(turned(robot, (0.2, 0.1, 0.1)), scene=scene or fp.Scene()), 1e-3)
+    problem = replace(turned(robot, (0.2, 0.1, 0.1)), scene=scene or fp.Scene())
+    space = SearchSpace(problem, 1e-3)
     states = np.linspace(space.start, space.goals[0], 9)
     states[1:-1, JOINTS:] += rng.normal(0.0, 0.1, (7, states.shape[1] - JOINTS))
     attitudes = np.zeros((9, 4))
     attitudes[0, 3] = 1.0
     assert fly_path(space.arrays, states, attitudes, 0, 8) == 8
-    space.arrays.setup[0]["goal"] = attitudes[-1]
+    goal = robot.assemble(problem.goal[:3], attitudes[-1], robot.joint_values(problem.goal))
+    space = SearchSpace(replace(problem, goal=goal), 1e-3)
     return space, states, attitudes
 
 
