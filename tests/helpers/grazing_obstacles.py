@@ -91,13 +91,31 @@ def grazing_scene(
     for _ in range(int(rng.integers(1, 4))):
         track = placed[int(rng.integers(len(placed)))][:, :3, 3]
         center = track[int(rng.integers(len(track)))] + rng.normal(size=3) * 0.25
-        away = min(
-            least_sphere_distance(shape, at, center[None], np.zeros(1))
-            for shape, at in zip(bodies.shapes, placed, strict=True)
-        )
+        away = least_distance(bodies, placed, center)
         spare = 10.0 ** rng.uniform(-4.7, -2.0) * (1.0 if rng.random() < 0.9 else -1.0)
         if away - spare > 1e-3:
             centers.append(center)
             radii.append(away - spare)
             least = min(least, spare)
     return (fp.Scene(centers, radii), least) if radii else (None, least)
+
+
+def least_distance(bodies: Bodies, placed: list[np.ndarray], center: np.ndarray) -> float:
+    """Least signed distance of a point from all shapes over all samples [m].
+
+    Shapes and samples that are farther away than what is found already are left out, by the
+    distance of a ball about the shape's origin.
+    """
+    least, rows = np.inf, []
+    for shape, at in zip(bodies.shapes, placed, strict=True):
+        corners = shape.points if shape.half is None else shape.half[None]
+        reach = float(np.linalg.norm(corners, axis=1).max()) + shape.swell
+        rows.append((np.linalg.norm(center - at[:, :3, 3], axis=1) - reach, shape, at))
+    for bounds, shape, at in sorted(rows, key=lambda row: row[0].min()):
+        nearest = int(np.argmin(bounds))
+        for chosen in (slice(nearest, nearest + 1), None):
+            near = at[chosen] if chosen is not None else at[bounds < least]
+            if len(near):
+                found = least_sphere_distance(shape, near, center[None], np.zeros(1))
+                least = min(least, found)
+    return least
