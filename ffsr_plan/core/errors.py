@@ -271,6 +271,8 @@ class PathNotFound(PlanningError):
         apart: least distance of the last two trees, in which 0.6 m count as a radian [m].
         contact: what is in the way there, if anything.
         advice: what may help.
+        attitude_missed: least angle by which a path to the goal missed the attitude that is
+            demanded there [rad]; None without such a path.
     """
 
     seconds: float
@@ -281,12 +283,17 @@ class PathNotFound(PlanningError):
     apart: float
     contact: Contact | None = None
     advice: tuple[str, ...] = ()
+    attitude_missed: float | None = None
 
     def message(self) -> str:
         """What was tried, what is in the way, and what may help."""
         text = f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
         text += f"nodes, {self.meetings} meetings of the trees from start and goal"
         text += f", {self.refused} paths refused by the proof" if self.refused else ""
+        if self.attitude_missed is not None:
+            degrees = math.degrees(self.attitude_missed)
+            text += f"; the best path misses the goal's attitude by {self.attitude_missed:.3g} rad "
+            return text + f"({degrees:.3g} degrees)" + helping(self.advice)
         text += f"; the trees came as near to each other as {self.apart:.3g} m"
         if self.contact is not None:
             link, obstacle, depth, source = self.contact

@@ -18,7 +18,12 @@ from ffsr_plan.tree_search.search_space import SearchSpace
 
 
 def path_not_found(
-    space: SearchSpace, restarts: Restarts, proven: ProvenPaths, interrupted: bool, seconds: float
+    space: SearchSpace,
+    restarts: Restarts,
+    proven: ProvenPaths,
+    interrupted: bool,
+    seconds: float,
+    missed: float | None,
 ) -> PathNotFound:
     """The error.
 
@@ -28,6 +33,7 @@ def path_not_found(
         proven: proofs, all of which failed.
         interrupted: whether a time limit ended the search.
         seconds: time that it took [s].
+        missed: least angle by which a path missed the attitude that is demanded [rad], if any did.
     """
     state, attitude, other = restarts.nearest()
     near = _in_the_way(space, state, attitude, other)
@@ -44,6 +50,7 @@ def path_not_found(
         far_apart(space, state, other),
         contact,
         _advice(space, interrupted),
+        missed,
     )
 
 

@@ -63,6 +63,7 @@ class SearchRounds:
             self.space, searching, settings.reaches, settings.first_checks, settings.roots
         )
         self._paths: list[ImprovedPath] = []
+        self._missed: float | None = None  # [rad], by paths to the goal at another attitude
         self.proven = ProvenPaths(self.space, self._deadline)
         self._monitor = monitor._replace(reserve=self.proven.reserve)
 
@@ -104,7 +105,9 @@ class SearchRounds:
             PathNotFound: there is none.
         """
         if self.proven.best is None:
-            raise path_not_found(self.space, self._restarts, self.proven, interrupted, seconds)
+            raise path_not_found(
+                self.space, self._restarts, self.proven, interrupted, seconds, self._missed
+            )
         return self.proven.solution(self._restarts.trees, interrupted)
 
     def _checks(self) -> int:
@@ -147,6 +150,7 @@ class SearchRounds:
                 path.straighten(self._random, _TURNING)
                 path.turn(self._random, _TURNING)
             if path.missed > ENOUGH:
+                self._missed = min(self._missed or np.inf, path.missed)
                 continue
             if self.proven.best is None:
                 if not self._prove(path):

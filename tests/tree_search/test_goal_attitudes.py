@@ -103,6 +103,15 @@ def test_an_attitude_out_of_time_is_reported_with_what_may_help(robot):
         fp.plan(problem, fp.TreePlanner(checks=3_000))
 
 
+def test_without_a_path_to_the_attitude_the_error_says_by_how_much_it_is_missed(robot):
+    with pytest.raises(
+        fp.PathNotFound, match="the best path misses the goal's attitude by"
+    ) as info:
+        fp.plan(turned(robot, (2.9, 0.0, 0.0)), fp.TreePlanner(checks=3_000))
+    assert 0.01 < info.value.attitude_missed <= np.pi
+    assert "a goal attitude nearer to that of the start" in info.value.advice
+
+
 def on_the_spot(robot, degrees, **options):
     """The base turns where it is, by the arms alone."""
     goal = robot.configuration((0.0, 0.0, 0.0), (np.radians(degrees), 0.0, 0.0))
