@@ -169,18 +169,33 @@ class Problem:
     def ending_at(self, q: ArrayLike) -> Problem:
         """The same problem with one goal: of all of them, the one nearest to a configuration.
 
+        Revolute joints count as equal a whole turn apart; those with limits take the value in q.
+
         Args:
             q: (nq,) configuration, such as the end of a motion.
         """
-        if not len(self.alternatives):
-            return self
-        end = self.robot.check_configuration("q", q)
+        robot, end = self.robot, self.robot.check_configuration("q", q)
+        goals = [self._turned_to(goal, end) for goal in self.goals]
         apart = [
-            float(np.linalg.norm(self.robot.joint_change(end, goal)))
+            float(np.linalg.norm(robot.joint_change(end, goal)))
             + float(angle_between(end[3:7], goal[3:7])) * self.reach_attitude
-            for goal in self.goals
+            for goal in goals
         ]
-        return replace(self, goal=self.goals[int(np.argmin(apart))], alternatives=())
+        nearest = goals[int(np.argmin(apart))]
+        if not len(self.alternatives) and np.array_equal(nearest, self.goal):
+            return self
+        return replace(self, goal=nearest, alternatives=())
+
+    def _turned_to(self, goal: Array, end: Array) -> Array:
+        """(nq,) a goal, its revolute joints with limits turned to the value in `end`, or close."""
+        robot, values = self.robot, self.robot.joint_values(goal)
+        turns = np.round((robot.joint_values(end) - values) / (2.0 * np.pi))
+        turned = values + 2.0 * np.pi * np.where(
+            robot.prismatic | np.isinf(robot.upper), 0.0, turns
+        )
+        if not np.any(turns) or np.any((turned < robot.lower) | (turned > robot.upper)):
+            return goal
+        return frozen(robot.assemble(goal[:3], goal[3:7], turned))
 
     @cached_property
     def obstacles(self) -> Scene:

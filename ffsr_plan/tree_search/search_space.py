@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import product
+import heapq
 
 import numpy as np
 
@@ -128,25 +128,44 @@ class SearchSpace:
         others.sort(key=lambda way: way[0])
         chosen = firsts + others[: max(0, _MOST_GOALS - len(firsts))]
         chosen.sort(key=lambda way: way[0])
-        return np.array([way[1] for way in chosen]), tuple(way[2] for way in chosen)
+        return (
+            np.array([way[1] for way in chosen]),
+            tuple(self._ending_in(way[2], way[1]) for way in chosen),
+        )
+
+    def _ending_in(self, problem: Problem, state: Array) -> Problem:
+        """A problem whose goal has the joint values of a state (D,)."""
+        goal = problem.goal
+        return problem.ending_at(problem.robot.assemble(goal[:3], goal[3:7], state[JOINTS:]))
 
     def _length(self, state: Array) -> float:
         """Squared change of the joints from the start to a state (D,)."""
         return float(np.sum((state - self.start)[JOINTS:] ** 2))
 
     def _ways_to(self, problem: Problem) -> list[Array]:
-        """(D,) states at the goal of a problem, for each way round of the continuous joints."""
-        goal = self.start.copy()
+        """(D,) states at the goal of a problem, for each way round of its revolute joints."""
+        goal, begin = self.start.copy(), self.start[JOINTS:]
         goal[:3] += problem.base_displacement
         goal[TURN] = float(np.linalg.norm(self.turn))
-        change = problem.joint_displacement
-        free = np.isinf(problem.robot.upper)
-        other = np.where(change > 0.0, change - 2.0 * np.pi, change + 2.0 * np.pi)
-        ways = [
-            (own, there) if wide else (own,)
-            for own, there, wide in zip(change, other, free, strict=True)
-        ]
-        return [goal + np.append(np.zeros(JOINTS), steps) for steps in product(*ways)]
+        shortest: list[tuple[float, tuple[float, ...]]] = [(0.0, ())]
+        for joint, change in enumerate(problem.joint_displacement.tolist()):
+            ends = self._changes(joint, float(begin[joint]), change)
+            longer = [(square + end**2, (*way, end)) for square, way in shortest for end in ends]
+            shortest = heapq.nsmallest(_MOST_GOALS, longer)
+        return [goal + np.append(np.zeros(JOINTS), way) for _, way in shortest]
+
+    def _changes(self, joint: int, begin: float, change: float) -> list[float]:
+        """The change of a joint, and those that are a whole turn more or less and allowed."""
+        robot, found = self.problem.robot, [change]
+        if robot.prismatic[joint]:
+            return found
+        for turn in (-2.0 * np.pi, 2.0 * np.pi):
+            allowed = robot.lower[joint] <= begin + change + turn <= robot.upper[joint]
+            if np.isinf(robot.upper[joint]):
+                allowed = (turn < 0.0) == (change > 0.0)  # the other way round
+            if allowed:
+                found.append(change + turn)
+        return found
 
     def _box(self) -> Array:
         problem, robot = self.problem, self.problem.robot

@@ -1,9 +1,12 @@
 """Searches with several goals: any may be reached, and the plan has the one that was."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from ffsr_plan.tree_search.kernels.search_arrays import JOINTS
 from ffsr_plan.tree_search.search_space import SearchSpace
 from tests.helpers.free_scenes import beside_a_box, scattered
 
@@ -119,3 +122,43 @@ def test_a_problem_with_one_goal_is_planned_as_before(robot):
     problem = scattered(robot, 0)
     assert SearchSpace(problem, 1e-3).problems == (problem,)
     assert fp.plan(problem, QUICK).problem is problem
+
+
+def test_a_joint_with_limits_of_more_than_a_turn_takes_the_side_that_works():
+    """The same pose of a UR5 at two values of its first joint: the nearer one, if it is free."""
+    robot = fp.load_robot("satellite_ur5")
+    pan = robot.joint_names[0]
+    assert robot.upper[0] - robot.lower[0] > 2.0 * np.pi
+    start = robot.configuration(joints={pan: 3.0, robot.joint_names[1]: -1.5})
+    far = robot.configuration(joints={pan: -3.0, robot.joint_names[1]: -1.5})
+    problem = fp.Problem(robot, fp.Scene(), start, far, "free-floating")
+    plan = fp.plan(problem, until="first")
+    reached = robot.joint_values(plan.configurations[-1])
+    assert reached[0] == pytest.approx(2.0 * np.pi - 3.0)
+    assert np.allclose(reached[1:], robot.joint_values(far)[1:])
+    assert robot.joint_values(plan.problem.goal)[0] == pytest.approx(reached[0])
+    assert plan.length == pytest.approx(2.0 * np.pi - 6.0)
+    assert plan.verify().ok
+
+
+def test_whole_turns_keep_within_limits_and_sort_by_length():
+    robot = fp.load_robot("satellite_ur5")
+    rng = np.random.default_rng(4)
+    ends = [rng.uniform(robot.lower, robot.upper) for _ in range(2)]
+    start, goal = (
+        robot.configuration(joints=dict(zip(robot.joint_names, each, strict=True))) for each in ends
+    )
+    space = SearchSpace(fp.Problem(robot, fp.Scene(), start, goal, "free-floating"), 1e-3)
+    values = space.goals[:, JOINTS:]
+    turns = (values - ends[1]) / (2.0 * np.pi)
+    assert np.allclose(turns, np.round(turns))
+    assert np.all((robot.lower <= values) & (values <= robot.upper))
+    lengths = np.linalg.norm(values - ends[0], axis=1)
+    assert np.all(np.diff(lengths) >= 0.0)
+    whole = [
+        np.array(each)
+        for each in product(*([v + k * 2 * np.pi for k in (-1, 0, 1)] for v in ends[1]))
+    ]
+    inside = [v for v in whole if np.all((robot.lower <= v) & (v <= robot.upper))]
+    best = sorted(np.linalg.norm(v - ends[0]) for v in inside)[: len(lengths)]
+    assert np.allclose(lengths, best)
