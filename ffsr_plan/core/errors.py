@@ -271,6 +271,7 @@ class PathNotFound(PlanningError):
         apart: least distance of the last two trees, in which 0.6 m count as a radian [m].
         contact: what is in the way there, if anything.
         advice: what may help.
+        on_lattice: what a planner on a lattice said that found no path either; empty without one.
     """
 
     seconds: float
@@ -281,9 +282,10 @@ class PathNotFound(PlanningError):
     apart: float
     contact: Contact | None = None
     advice: tuple[str, ...] = ()
+    on_lattice: str = ""
 
     def message(self) -> str:
-        """What was tried, what is in the way, and what may help."""
+        """What was tried, what is in the way, and what may help; last, what the lattice said."""
         text = f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
         text += f"nodes, {self.meetings} meetings of the trees from start and goal"
         text += f", {self.refused} paths refused by the proof" if self.refused else ""
@@ -291,7 +293,8 @@ class PathNotFound(PlanningError):
         if self.contact is not None:
             link, obstacle, depth, source = self.contact
             text += f", with link '{link}' {-depth:.3g} m from {obstacle_name(obstacle, source)}"
-        return text + helping(self.advice)
+        text += helping(self.advice)
+        return f"{text}. On the lattice: {self.on_lattice}" if self.on_lattice else text
 
 
 @dataclass(eq=False, repr=False)
