@@ -35,7 +35,7 @@ if TYPE_CHECKING:
         UnprovenPath,
         WorkerDied,
     )
-    from ffsr_plan.display.live_view import LiveView
+    from ffsr_plan.display.live.live_view import LiveView
     from ffsr_plan.display.page_server import PageServer
     from ffsr_plan.dynamics import momentum
     from ffsr_plan.dynamics.actuation_mode import Mode
@@ -201,7 +201,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "UnprovenPath",
         "WorkerDied",
     ),
-    "display.live_view": ("LiveView",),
+    "display.live.live_view": ("LiveView",),
     "display.page_server": ("PageServer",),
     "dynamics.actuation_mode": ("Mode",),
     "dynamics.inverse_dynamics": ("States",),

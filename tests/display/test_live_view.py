@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 import ffsr_plan as fp
-from ffsr_plan.display import live_view
+from ffsr_plan.display.live import live_view
 from ffsr_plan.display.plan_page import page
 from tests.helpers import chromium
 from tests.helpers.watched_cycles import cycles_of, unpacked
