@@ -35,7 +35,7 @@ if TYPE_CHECKING:
         UnprovenPath,
         WorkerDied,
     )
-    from ffsr_plan.display.live_view import LiveView
+    from ffsr_plan.display.live.live_view import LiveView
     from ffsr_plan.display.page_server import PageServer
     from ffsr_plan.dynamics import momentum
     from ffsr_plan.dynamics.actuation_mode import Mode
@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.planning.plan_and_refine import plan, refine
     from ffsr_plan.planning.warm_up import warm_up
+    from ffsr_plan.portfolio.portfolio_planner import Portfolio
     from ffsr_plan.problem.lattice_settings import Axis, Lattice
     from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
     from ffsr_plan.problem.problem import Problem
@@ -131,6 +132,7 @@ __all__ = [
     "Plan",
     "PlanNotVerified",
     "PlanningError",
+    "Portfolio",
     "PoseOutOfReach",
     "PostureAnnealing",
     "PostureAxis",
@@ -199,7 +201,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "UnprovenPath",
         "WorkerDied",
     ),
-    "display.live_view": ("LiveView",),
+    "display.live.live_view": ("LiveView",),
     "display.page_server": ("PageServer",),
     "dynamics.actuation_mode": ("Mode",),
     "dynamics.inverse_dynamics": ("States",),
@@ -213,6 +215,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "planning.certified_plan": ("Plan",),
     "planning.plan_and_refine": ("plan", "refine"),
     "planning.warm_up": ("warm_up",),
+    "portfolio.portfolio_planner": ("Portfolio",),
     "problem.lattice_settings": ("Axis", "Lattice"),
     "problem.posture_axes": ("PostureAxis", "PostureTarget"),
     "problem.problem": ("Problem",),

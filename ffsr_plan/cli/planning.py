@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.scenario_files.scenario import Scenario
-    from ffsr_plan.search.records import Cycle
+    from ffsr_plan.search.records import Cycle, TreeCycle
 
 _QUIET_SECONDS = 1.0  # before the progress bar appears
 
@@ -147,7 +147,7 @@ def _with_options(scenario: Scenario, options: Options) -> Scenario:
 
 def _plan_with_live_view(scenario: Scenario, options: Options, output: Output) -> Plan:
     """Plan while a page shows the search; afterwards it shows the plan."""
-    from ffsr_plan.display.live_view import LiveView
+    from ffsr_plan.display.live.live_view import LiveView
 
     live = options.live
     assert live is not None
@@ -171,7 +171,7 @@ def _plan_with_progress(
     scenario: Scenario,
     options: Options,
     output: Output,
-    on_cycle: Callable[[Cycle], None] | None = None,
+    on_cycle: Callable[[Cycle | TreeCycle], None] | None = None,
 ) -> Plan:
     """Plan with a progress bar on a terminal if the search takes more than a second."""
     from rich.progress import Progress
@@ -184,7 +184,7 @@ def _plan_with_progress(
     ) as progress:
         task = progress.add_task("ants", visible=False)
 
-        def show(cycle: Cycle) -> None:
+        def show(cycle: Cycle | TreeCycle) -> None:
             if on_cycle is not None:
                 on_cycle(cycle)
             if on_terminal and time.monotonic() - begin > _QUIET_SECONDS:
@@ -193,7 +193,8 @@ def _plan_with_progress(
                     visible=True,
                     total=cycle.cycles,
                     completed=cycle.number,
-                    description=f"ants, best F {cycle.best:.2f}",
+                    description=f"{'trees' if hasattr(cycle, 'nodes') else 'ants'}, best F "
+                    f"{cycle.best:.2f}",
                 )
                 progress.refresh()
 

@@ -273,6 +273,7 @@ class PathNotFound(PlanningError):
         advice: what may help.
         attitude_missed: least angle by which a path to the goal missed the attitude that is
             demanded there [rad]; None without such a path.
+        on_lattice: what a planner on a lattice said that found no path either; empty without one.
     """
 
     seconds: float
@@ -284,9 +285,10 @@ class PathNotFound(PlanningError):
     contact: Contact | None = None
     advice: tuple[str, ...] = ()
     attitude_missed: float | None = None
+    on_lattice: str = ""
 
     def message(self) -> str:
-        """What was tried, what is in the way, and what may help."""
+        """What was tried, what is in the way, and what may help; last, what the lattice said."""
         text = f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
         text += f"nodes, {self.meetings} meetings of the trees from start and goal"
         text += f", {self.refused} paths refused by the proof" if self.refused else ""
@@ -298,7 +300,8 @@ class PathNotFound(PlanningError):
         if self.contact is not None:
             link, obstacle, depth, source = self.contact
             text += f", with link '{link}' {-depth:.3g} m from {obstacle_name(obstacle, source)}"
-        return text + helping(self.advice)
+        text += helping(self.advice)
+        return f"{text}. On the lattice: {self.on_lattice}" if self.on_lattice else text
 
 
 @dataclass(eq=False, repr=False)

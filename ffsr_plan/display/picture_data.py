@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.core.arrays import Array, Flags, frozen
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
-from ffsr_plan.search.records import Branches, Trails
+from ffsr_plan.search.records import Branches
 
 _SOLID_COUNT = 60  # scenes of at most so many obstacles are drawn solid as a whole
+_NO_SEGMENTS = frozen(np.zeros((0, 2, 3))), frozen(np.zeros(0))
 _SOLID_DISTANCE = 0.8  # in larger scenes, distance [m] from the robot up to which they are
 
 
@@ -81,9 +82,9 @@ def trail_segments(plan: PlanData, most: int = 3000) -> tuple[Array, Array]:
     """
     lattice, trails = plan.lattice, plan.trails
     if lattice is None or isinstance(trails, Branches):
-        return _branch_segments(trails, most)
+        return branch_segments(trails, most) if isinstance(trails, Branches) else _NO_SEGMENTS
     if not len(trails.layer):
-        return np.zeros((0, 2, 3)), np.zeros(0)
+        return _NO_SEGMENTS
     strength = 0.5 * (_logarithmic(trails.laid) + _logarithmic(trails.ants))
     order = np.argsort(strength, kind="stable")[-most:]
     layer, tail, head = trails.layer[order], trails.tail[order], trails.head[order]
@@ -92,10 +93,18 @@ def trail_segments(plan: PlanData, most: int = 3000) -> tuple[Array, Array]:
     return np.stack([begin, end], axis=1), strength[order]
 
 
-def _branch_segments(branches: Trails | Branches, most: int) -> tuple[Array, Array]:
-    """Edges of the trees; of many, some at equal distances in their order."""
-    if not isinstance(branches, Branches) or not len(branches.tree):
-        return np.zeros((0, 2, 3)), np.zeros(0)
+def branch_segments(branches: Branches, most: int) -> tuple[Array, Array]:
+    """Edges of the trees; of many, some at equal distances in their order.
+
+    Args:
+        branches: the edges.
+        most: greatest number of them that are taken.
+
+    Returns:
+        As `trail_segments`.
+    """
+    if not len(branches.tree):
+        return _NO_SEGMENTS
     chosen = slice(None, None, max(1, -(-len(branches.tree) // most)))
     ends = np.stack([branches.begin[chosen], branches.end[chosen]], axis=1)
     return ends, np.where(branches.tree[chosen] == 0, 0.6, 0.2)

@@ -101,6 +101,11 @@ def add_robot(viewer: MeshcatNode, robot: SpaceRobot, q: Array, ghost: int | Non
         for part, (geometry, placement) in enumerate(solids(shape)):
             node[str(part)].set_object(geometry, material)
             node[str(part)].set_transform(shape.placement.homogeneous @ placement)
+    place_robot(viewer, robot, q)
+
+
+def place_robot(viewer: MeshcatNode, robot: SpaceRobot, q: Array) -> None:
+    """Move a robot that was added before to a configuration (nq,)."""
     data = robot.model.createData()
     pin.forwardKinematics(robot.model, data, q)
     for joint in range(1, robot.model.njoints):

@@ -19,6 +19,8 @@ from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.plans.planner_registry import Planner, planner_of
+from ffsr_plan.portfolio.lattice_left_out import without_lattice
+from ffsr_plan.portfolio.portfolio_planner import Portfolio
 from ffsr_plan.problem.memory_estimate import check_colonies
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
@@ -59,6 +61,7 @@ def plan(
         problem: what to plan.
         planner: settings of the planner, or its name; by default `TreePlanner()` without a
             lattice, `PostureAnnealing()` on one with posture axes, `MaxMinAntSystem()` on others.
+            `Portfolio()` runs the trees and the lattice's planner and takes the better path.
         seed: a whole number >= 0, or a generator. The same seed gives the same plan, bit for bit,
             whatever the number of workers.
         refine: whether to move the path off the lattice in the end, see `refine`; by default on
@@ -66,9 +69,9 @@ def plan(
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
         time_limit: [s] from call to return, but for compiling; few calls are 5 % + 20 ms late.
-        until: `first` returns the first path that is proven free, where there is no lattice.
-        on_cycle: called with a `Cycle` after each cycle, for a single colony; without a lattice,
-            with a `TreeCycle` after each round.
+        until: `first` returns the first path that `TreePlanner` proves free.
+        on_cycle: called with a `Cycle` after each cycle, for a single colony; by trees, with a
+            `TreeCycle` after each round.
         on_interrupt: what the first Ctrl-C does: `return` the best plan so far, or `raise`.
 
     Raises:
@@ -167,7 +170,7 @@ def _request(
     first = one_of("until", until, ("end", "first")) == "first"
     if first and not isinstance(planner, TreePlanner):
         raise InvalidInput(
-            "until", until, f"'end' with {planner.name}, or a problem without lattice"
+            "until", until, f"'end' with {planner.name}, or tree-planner without a lattice"
         )
     return SearchRequest(
         refine=None if refine is None else truth("refine", refine),
@@ -185,13 +188,13 @@ def _deadline(time_limit: float | None) -> Deadline:
 def _planner_for(problem: Problem, planner: Planner | str | None) -> tuple[Planner, Problem]:
     """The planner, after a check that it can solve the problem, and the problem as it sees it.
 
-    On a lattice that is the problem without alternative goals.
+    For planners on a lattice that is the problem without alternative goals.
     """
     if not isinstance(problem, Problem):
         raise InvalidInput("problem", problem, "a Problem (that of a scenario is scenario.problem)")
     chosen = planner_of(planner, problem)
     chosen.refuse(problem)
-    if problem.lattice is not None:
+    if problem.lattice is not None and not isinstance(chosen, Portfolio):
         problem = problem.ending_at(problem.goal)
     return chosen, problem
 
@@ -200,6 +203,8 @@ def _certified(
     problem: Problem, planner: Planner, seed: int | None, watch: Stopwatch, solution: Solution
 ) -> Plan:
     """The plan of a solution; `watch` was started when it was asked for."""
+    if problem.lattice is not None and solution.lattice is None:
+        problem = without_lattice(problem)  # the trees of a portfolio found the path
     end = solution.motion.configurations()[-1]
     return Plan(
         problem=problem.ending_at(end),

@@ -16,6 +16,7 @@ from ffsr_plan.core.text_files import read_text, write_text
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_reading import PLAIN, plan_of
 from ffsr_plan.plans.plan_tables import FORMAT
+from ffsr_plan.plans.planner_registry import planner_table
 from ffsr_plan.plans.robot_table import robot_table
 from ffsr_plan.search.records import Branches, Trails
 
@@ -45,7 +46,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
             **{name: getattr(problem, name) for name in PLAIN},
             **_given("window", problem.window),
         },
-        "planner": {"name": plan.planner.name, **dataclasses.asdict(plan.planner)},
+        "planner": planner_table(plan.planner),
         "seed": plan.seed,
         "nodes": plan.nodes.tolist(),
         "motion": {

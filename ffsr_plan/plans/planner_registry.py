@@ -2,28 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+from typing import Any
+
 from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.portfolio.lattice_planners import (
+    LATTICE_PLANNERS,
+    OnLattice,
+    default_on_lattice,
+)
+from ffsr_plan.portfolio.portfolio_planner import Portfolio
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.search.ants.ant_system import AntSystem
-from ffsr_plan.search.ants.max_min import MaxMinAntSystem
-from ffsr_plan.search.optimum_planner import LatticeOptimum
-from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
 from ffsr_plan.tree_search.tree_planner import TreePlanner
 
-Planner = AntSystem | MaxMinAntSystem | LatticeOptimum | PostureAnnealing | TreePlanner
+Planner = OnLattice | TreePlanner | Portfolio
 PLANNERS: dict[str, type[Planner]] = {
-    kind.name: kind
-    for kind in (AntSystem, MaxMinAntSystem, LatticeOptimum, PostureAnnealing, TreePlanner)
+    **LATTICE_PLANNERS,
+    TreePlanner.name: TreePlanner,
+    Portfolio.name: Portfolio,
 }
 
 
 def default_planner(lattice: Lattice | None) -> Planner:
     """`TreePlanner` without a lattice, else `PostureAnnealing` or `MaxMinAntSystem`."""
-    if lattice is None:
-        return TreePlanner()
-    return PostureAnnealing() if lattice.postures else MaxMinAntSystem()
+    return TreePlanner() if lattice is None else default_on_lattice(lattice)
+
+
+def planner_table(planner: Planner) -> dict[str, Any]:
+    """Name and settings of a planner in plain values, as files hold them."""
+    table = {"name": planner.name, **asdict(planner)}
+    if isinstance(planner, Portfolio) and planner.lattice is not None:
+        table["lattice"] = planner_table(planner.lattice)
+    return table
 
 
 def planner_of(planner: Planner | str | None, problem: Problem) -> Planner:

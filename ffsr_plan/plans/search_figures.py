@@ -6,6 +6,7 @@ import numpy as np
 
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.plans.plan_tables import PlanTable
+from ffsr_plan.portfolio.portfolio_planner import Portfolio
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 
@@ -65,7 +66,10 @@ def _check_history(what: str, table: PlanTable, problem: Problem) -> None:
         allowed = f"at least lattice_objective, {least!r}"
         raise InvalidInput(f"{what}, history.best.{k}", float(best[k]), allowed)
     own = "ants" if problem.lattice is not None else "ways"
-    most = getattr(table.planner, own, 1)
+    planner = table.planner
+    if isinstance(planner, Portfolio):
+        planner = planner.part(problem)
+    most = getattr(planner, own, 1)
     for k in np.flatnonzero(history.distinct > most)[:1]:
         allowed = f"at most {most}, the {own} of the planner"
         raise InvalidInput(f"{what}, history.distinct.{k}", int(history.distinct[k]), allowed)

@@ -73,6 +73,23 @@ def free_objective(problem: Problem, length: float, clearances: Array) -> float:
     return objective(problem, length, np.concatenate([[np.inf], clearances, [np.inf]]))
 
 
+def stations_objective(problem: Problem, motion: Motion) -> tuple[float, float]:
+    """L and F of a motion, whether it was planned on a lattice or not.
+
+    Args:
+        problem: gives obstacles, weights, delta, the unit of length and the largest clearance that
+            counts.
+        motion: the motion.
+
+    Returns:
+        L [m], and F with the clearances at the stations [length units].
+    """
+    lengths = edge_lengths(problem, motion)
+    query = ObstacleQuery(problem.robot, problem.obstacles)
+    length, clearances = float(lengths.sum()), query.distances(motion.at(*stations(lengths)))
+    return length, free_objective(problem, length, clearances)
+
+
 def whole_objective(problem: Problem, motion: Motion, length: float) -> float:
     """F of a whole motion: the sum is over the pieces between the stations.
 

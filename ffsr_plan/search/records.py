@@ -56,6 +56,8 @@ class TreeCycle(NamedTuple):
         checks: configurations checked so far.
         nodes: of all trees so far.
         path: (m + 1, 3) base origin at the corners of the best path [m]; (0, 3) without one.
+        arrival: (nq,) configuration at its end [m, quaternion xyzw, rad or m]; (0,) without one.
+        branches: of the trees of the last search; none where the robot floats.
     """
 
     number: int
@@ -65,6 +67,8 @@ class TreeCycle(NamedTuple):
     checks: int
     nodes: int
     path: Array
+    arrival: Array
+    branches: Branches
 
 
 OnCycle = Callable[[Any], object]
@@ -201,6 +205,8 @@ class SearchRequest(NamedTuple):
         deadline: when all has to end, by the time limit or Ctrl-C; None for never.
         begin: called when the search begins, after the lattice has been set up.
         first: whether the first path that is proven free is enough.
+        incumbent: a motion that is known to be free, which a search by trees is to improve; None
+            for none.
     """
 
     refine: bool | None = None
@@ -210,6 +216,7 @@ class SearchRequest(NamedTuple):
     deadline: Deadline | None = None
     begin: Callable[[], object] = bool
     first: bool = False
+    incumbent: Motion | None = None
 
     def monitor(self) -> SearchMonitor:
         """The monitor of a search that begins now."""

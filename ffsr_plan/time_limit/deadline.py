@@ -80,6 +80,18 @@ class Deadline:
         twin._stop_requested = stop_requested
         return twin
 
+    def part(self, share: float) -> Deadline:
+        """A deadline for a share of the time that is left, ended by the same Ctrl-C.
+
+        Args:
+            share: greater than 0, at most 1; of no account without a limit.
+        """
+        twin, left = copy.copy(self), self.remaining()
+        if math.isfinite(left):
+            twin._end = self.elapsed() + share * left
+            twin.seconds = share * self.seconds
+        return twin
+
     @contextmanager
     def without_stop(self) -> Iterator[None]:
         """In the body only the time limit counts; Ctrl-C does so after it."""

@@ -7,16 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate, proven_clearance
-from ffsr_plan.problem.free_objective import (
-    edge_lengths,
-    free_objective,
-    least_objective,
-    stations,
-)
+from ffsr_plan.problem.free_objective import least_objective, stations_objective
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import Branches, History, Solution
 from ffsr_plan.time_limit.deadline import Deadline
@@ -108,12 +102,7 @@ class ProvenPaths:
         if proof.missed > _MISSED:
             return False
         problem, motion = path.problem, proof.motion
-        lengths = edge_lengths(problem, motion)
-        clearances = ObstacleQuery(problem.robot, problem.obstacles).distances(
-            motion.at(*stations(lengths))
-        )
-        length = float(lengths.sum())
-        value = free_objective(problem, length, clearances)
+        length, value = stations_objective(problem, motion)
         if self.best is None or value < self.best.objective:
             self.best = ProvenPath(problem, proof, motion, length, value)
         return True
@@ -157,7 +146,7 @@ class ProvenPaths:
             optimum_is_exact=False,
             clearances=best.proof.clearances,
             history=History.of_rows(np.array(self._rows)),
-            trails=self._branches(trees),
+            trails=self.branches(trees),
             certificate=Certificate(
                 self._edges_free, self._edges_refused, nodes, max(queries - nodes, 0), least,
                 problem.robot.unchecked_links,
@@ -177,8 +166,12 @@ class ProvenPaths:
             bars = np.vstack([bars, [*middle, max(_NEAR, length), 2.0 * known]])
         self._space.arrays = arrays._replace(bars=bars)
 
-    def _branches(self, trees: Trees) -> Branches:
-        """Edges of the trees; of very many, some at equal distances in their order."""
+    def branches(self, trees: Trees) -> Branches:
+        """Edges of the trees; of very many, some at equal distances in their order.
+
+        Args:
+            trees: those of the last search.
+        """
         if self._space.problem.mode.floats:
             return Branches.none()  # the base of a node lies where the whole way to it leads
         parts = []

@@ -6,6 +6,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import OutOfTime
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import SearchMonitor, Solution, TreeCycle
 from ffsr_plan.time_limit.deadline import Deadline
@@ -66,6 +67,16 @@ class SearchRounds:
         self._missed: float | None = None  # [rad], by paths to the goal at another attitude
         self.proven = ProvenPaths(self.space, self._deadline)
         self._monitor = monitor._replace(reserve=self.proven.reserve)
+
+    def begin_with(self, motion: Motion) -> None:
+        """Improve a known motion too, if it keeps the margin or can be made to.
+
+        Args:
+            motion: one that is free.
+        """
+        path = self._path(self.space.states_along(motion), motion.attitudes)
+        if path.repair(self._random, _AROUND) and path.missed <= ENOUGH:
+            self._keep(path)
 
     def run(self, checks: int, first: bool) -> bool:
         """Search until so many configurations have been checked.
@@ -227,11 +238,14 @@ class SearchRounds:
         if self._monitor.on_cycle is None:
             return
         best = self.proven.best
-        path: Array = np.zeros((0, 3)) if best is None else best.motion.positions
+        path, arrival = np.zeros((0, 3)), np.zeros(0)
+        if best is not None:
+            path, arrival = best.motion.positions, best.motion.configurations()[-1]
         objective = np.inf if best is None else best.objective
         self._monitor.on_cycle(
             TreeCycle(
                 number, rounds, objective, new / unit, self._checks(),
-                self._restarts.meetings.nodes, path,
+                self._restarts.meetings.nodes, path, arrival,
+                self.proven.branches(self._restarts.trees),
             )
         )  # fmt: skip

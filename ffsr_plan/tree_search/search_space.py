@@ -10,6 +10,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Records, records
 from ffsr_plan.dynamics.kernels.bodies import LINK_STATE, ROBOT_STATE, base_at_rest
 from ffsr_plan.dynamics.momentum import centers_of_mass
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.shape_arrays import BOX
@@ -107,6 +108,26 @@ class SearchSpace:
     def goal_at(self, state: Array) -> int:
         """The number of the goal at a state (D,)."""
         return int(np.argmin(np.sum((self.goals - state) ** 2, axis=1)))
+
+    def states_along(self, motion: Motion) -> Array:
+        """The states at the corners of a motion.
+
+        Args:
+            motion: from the start to one of the goals.
+
+        Returns:
+            (m + 1, D) states.
+        """
+        states = np.tile(self.start, (motion.edges + 1, 1))
+        if not motion.mode.floats:
+            states[:, :3] = motion.positions
+        shares = motion.turn_shares
+        if shares is None:
+            shares = np.arange(motion.edges + 1) / motion.edges
+        states[:, TURN] = shares * self.goals[0, TURN]
+        states[:, JOINTS:] = motion.joint_values
+        states[-1] = self.goals[self.goal_at(states[-1])]
+        return states
 
     def aim_at(self, goal: int) -> None:
         """Have paths arrive at the attitude of a goal, where that is demanded.

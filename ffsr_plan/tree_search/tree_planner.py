@@ -70,6 +70,8 @@ class TreePlanner(TreeSettings):
         request = request._replace(deadline=deadline)
         rounds = SearchRounds(problem, self, rng, request.monitor())
         limited = deadline.is_limited
+        if request.incumbent is not None:
+            rounds.begin_with(request.incumbent)
         checks = self.checks or (MOST_CHECKS if limited else _DEFAULT_CHECKS)
         interrupted = rounds.run(checks, request.first)
         return rounds.solution(interrupted, deadline.elapsed())

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.display.cycle_picture import commands, take
+from ffsr_plan.display.live.cycle_picture import commands, take
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from tests.helpers.watched_cycles import cycles_of, unpacked
 

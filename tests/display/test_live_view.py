@@ -12,11 +12,12 @@ import pytest
 from PIL import Image
 
 import ffsr_plan as fp
-from ffsr_plan.display import live_view
+from ffsr_plan.display.live import live_view, tree_picture
 from ffsr_plan.display.plan_page import page
 from tests.helpers import chromium
 from tests.helpers.watched_cycles import cycles_of, unpacked
 
+TREES = fp.TreePlanner(checks=200_000)
 in_a_browser = pytest.mark.skipif(chromium.PROGRAM is None, reason="no Chromium on this machine")
 
 
@@ -124,6 +125,85 @@ def test_the_page_says_why_there_is_no_plan(point):
     assert heard == [{"over": str(caught.value)}]
 
 
+@pytest.fixture(scope="module")
+def rounds(robot):
+    """A problem without a lattice, its plan, and the rounds of its search."""
+    goal = robot.configuration((4.0, 0.0, 0.0), joints={"left_1": 0.7})
+    problem = fp.Problem(robot, fp.Scene([[2.0, 0.2, 0.0]], [0.35]), robot.neutral(), goal)
+    seen = []
+    plan = fp.plan(problem, TREES, on_cycle=seen.append)
+    return problem, plan, seen
+
+
+def test_searches_by_trees_are_shown_and_are_the_same_watched_or_not(rounds):
+    problem, plan, seen = rounds
+    view = fp.LiveView(problem, open_browser=False)
+    with listening(view.url) as heard, view:
+        assert fp.plan(problem, TREES, on_cycle=view.on_cycle) == plan
+    last = heard[-1]
+    assert (last["number"], last["checks"], last["nodes"]) == (
+        len(seen), seen[-1].checks, seen[-1].nodes
+    )  # fmt: skip
+    assert last["best"] == plan.objective
+    assert last["history"][-1][:2] == [len(seen), plan.objective]
+
+
+def test_the_picture_of_a_round_has_branches_the_best_path_and_the_robot_at_its_end(rounds):
+    problem, plan, seen = rounds
+    shown = unpacked(tree_picture.commands(seen[-1], problem))
+    assert {"/meshcat/trails/tau", "/meshcat/tracks/best"} <= shown.keys()
+    assert shown["/meshcat/ants/dots"]["type"] == "delete"
+    (mesh,) = shown["/meshcat/trails/tau"]["object"]["geometries"]
+    corners = np.frombuffer(mesh["data"]["attributes"]["position"]["array"].data, np.float32)
+    assert corners.size == 12 * len(seen[-1].branches.tree)  # a ribbon has four corners a branch
+    placed = np.array(shown["/meshcat/robot/joint_1"]["matrix"]).reshape(4, 4).T
+    assert placed[:3, 3] == pytest.approx(plan.problem.goal[:3])
+    assert np.array_equal(seen[-1].arrival, plan.configurations[-1])
+
+
+def test_a_round_without_path_and_branches_clears_the_picture(rounds):
+    problem, _, seen = rounds
+    empty = seen[0]._replace(
+        path=np.zeros((0, 3)), arrival=np.zeros(0), branches=fp.Branches.none(), best=np.inf
+    )
+    shown = unpacked(tree_picture.commands(empty, problem))
+    assert {path: each["type"] for path, each in shown.items()} == {
+        "/meshcat/ants/dots": "delete", "/meshcat/trails/tau": "delete"
+    }  # fmt: skip
+
+
+def test_a_portfolio_shows_ants_then_trees_with_a_history_of_each(problem):
+    portfolio, view = fp.Portfolio(trees=TREES), fp.LiveView(problem, open_browser=False)
+    kinds = []
+    with view:
+
+        def see(cycle):
+            view.on_cycle(cycle)
+            kinds.append(type(cycle))
+
+        watched = fp.plan(problem, portfolio, on_cycle=see)
+        rounds = kinds.count(fp.TreeCycle)
+        assert 0 < rounds < len(kinds)
+        assert [each[0] for each in view._history] == list(range(1, rounds + 1))
+    assert watched == fp.plan(problem, portfolio)
+
+
+def test_where_the_robot_floats_there_is_a_live_view_too(robot):
+    goal = robot.configuration(joints={"left_1": 0.7})
+    problem = fp.Problem(robot, fp.Scene(), robot.neutral(), goal, "free-floating")
+    with fp.LiveView(problem, open_browser=False) as view:
+        fp.plan(problem, TREES, on_cycle=view.on_cycle)
+
+
+def test_a_colony_is_refused_where_there_is_no_lattice(rounds, problem):
+    cycle = cycles_of(problem, fp.MaxMinAntSystem(cycles=1))[0]
+    with (
+        fp.LiveView(rounds[0], open_browser=False) as view,
+        pytest.raises(fp.InvalidInput, match="rounds of trees"),
+    ):
+        view.on_cycle(cycle)
+
+
 class Clock:
     """A clock that advances only in `sleep` and by hand."""
 
@@ -147,7 +227,7 @@ def clock(monkeypatch):
 
 def test_at_most_ten_cycles_a_second_and_the_last_are_drawn(problem, view, clock, monkeypatch):
     drawn = []
-    monkeypatch.setattr(view, "_show", lambda _, cycle: drawn.append(cycle.number))
+    monkeypatch.setattr(view, "_show", lambda cycle: drawn.append(cycle.number))
 
     def see(cycle):
         view.on_cycle(cycle)
@@ -161,7 +241,7 @@ def test_slow_pictures_are_drawn_rarely(problem, view, clock, monkeypatch):
     """A picture of half a second is next due after 25 s, 2 % of the time."""
     drawn = []
 
-    def draw(_, cycle):
+    def draw(cycle):
         drawn.append(cycle.number)
         clock.now += 0.5
 
@@ -257,6 +337,26 @@ def test_a_browser_shows_the_search_and_then_the_plan(fig2a_plan, tmp_path):
         assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 2000
     for one, other in pairwise(pictures):
         assert np.mean(np.abs(one - other).sum(axis=2) > 60) > 0.005
+
+
+@in_a_browser
+@pytest.mark.slow
+def test_a_browser_shows_the_branches_of_trees(rounds, tmp_path):
+    problem, _, seen = rounds
+    shots = [tmp_path / f"{name}.png" for name in ("waiting", "last")]
+    with (
+        fp.LiveView(problem, open_browser=False) as view,
+        chromium.opened(view.url, tmp_path / "profile") as tab,
+    ):
+        tab.wait_until("document.title.startsWith('ready')")
+        tab.shoot(shots[0])
+        view.on_cycle(seen[-1])
+        tab.wait_until("document.title.startsWith('1 shown')")
+        assert f"round {seen[-1].number} of" in tab.ask("byId('state').textContent")
+        assert tab.ask("byId('trails').textContent") == "trees"
+        tab.shoot(shots[1])
+    one, other = (np.asarray(Image.open(s).convert("RGB")).astype(int)[100:450] for s in shots)
+    assert np.mean(np.abs(one - other).sum(axis=2) > 60) > 0.002
 
 
 @in_a_browser

@@ -8,8 +8,10 @@ import jsonschema
 import pytest
 from typer.testing import CliRunner
 
+import ffsr_plan as fp
 from ffsr_plan.cli import app
 from ffsr_plan.core.bundled_files import folder
+from ffsr_plan.core.settings import from_mapping
 from ffsr_plan.scenario_files.scenario_schema import ScenarioFile
 from tests.scenario_files.test_obstacle_sources import ARM, TABLES
 from tests.scenario_files.test_scenario import CLOUDS, GOOD
@@ -36,9 +38,20 @@ def test_every_bundled_scenario_is_valid(validator, path):
 
 
 FLOATS = ARM.replace("MODE", "free-floating")
+PORTFOLIO = """
+[planner.lattice]
+name = "ant-system"
+ants = 8
+[planner.trees]
+checks = 20000
+"""
+BOTH = (
+    GOOD.replace("ants = 8\n", "").replace("rho = 0.7\n", "").replace('"ant-system"', '"portfolio"')
+    + PORTFOLIO
+)
 
 
-@pytest.mark.parametrize("text", [GOOD, GOOD + CLOUDS, GOOD + TABLES, FLOATS])
+@pytest.mark.parametrize("text", [GOOD, GOOD + CLOUDS, GOOD + TABLES, FLOATS, BOTH])
 def test_what_the_reader_takes_is_valid(validator, text):
     validator.validate(tomllib.loads(text))
 
@@ -67,6 +80,27 @@ def test_wrong_scenarios_are_not(validator, right, wrong):
     data = tomllib.loads(GOOD.replace(right, wrong))
     with pytest.raises(jsonschema.ValidationError):
         validator.validate(data)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [('"ant-system"', '"tree-planner"'), ("ants = 8", "cycle = 8"), ("checks", "check"),
+     ('name = "ant-system"\n', "")],
+    ids=str,
+)  # fmt: skip
+def test_wrong_parts_of_a_portfolio_are_not_valid(validator, right, wrong):
+    assert right in BOTH
+    text = BOTH.replace(right, wrong)
+    with pytest.raises(jsonschema.ValidationError):
+        validator.validate(tomllib.loads(text))
+    with pytest.raises(fp.InvalidInput, match="planner"):
+        from_mapping(ScenarioFile, tomllib.loads(text))
+
+
+def test_a_portfolio_is_read_with_the_settings_of_both():
+    table = from_mapping(ScenarioFile, tomllib.loads(BOTH)).planner
+    lattice, trees = fp.AntSystem(ants=8), fp.TreePlanner(checks=20_000)
+    assert (table.planner(), table.seed) == (fp.Portfolio(lattice, trees), 5)
 
 
 def test_every_table_says_what_it_is(validator):

@@ -62,6 +62,7 @@ def calls(plan, tmp_path_factory):
         fp.MaxMinAntSystem: vars(fp.MaxMinAntSystem()),
         fp.PostureAnnealing: vars(fp.PostureAnnealing()),
         fp.TreePlanner: vars(fp.TreePlanner()),
+        fp.Portfolio: vars(fp.Portfolio()),
         fp.Problem: {each.name: getattr(problem, each.name) for each in fields(problem)},
         fp.Bus: {"size": [1, 1, 1], "mass": 3.0, "inertia": None, "center_of_mass": [0, 0, 0],
                  "panels": ()},

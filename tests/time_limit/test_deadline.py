@@ -50,6 +50,19 @@ def test_without_a_limit_only_ctrl_c_ends(clock):
         deadline.check()
 
 
+def test_a_part_is_a_share_of_what_is_left_and_leaves_the_whole_as_it_is(clock):
+    pressed = []
+    whole = Deadline(2.0, clock=clock).stopped_by(lambda: bool(pressed))
+    clock.now += 1.0
+    part = whole.part(0.25)
+    assert (part.elapsed(), part.remaining(), part.seconds) == (1.0, 0.25, 0.5)
+    part.close()
+    assert whole.remaining() == 1.0
+    pressed.append(True)
+    assert whole.stopped()
+    assert not Deadline(clock=clock).part(0.25).is_limited
+
+
 def test_what_kernels_take_before_they_run_does_not_count(clock):
     deadline = Deadline(2.0, clock=clock)
     clock.now += 3.0

@@ -17,17 +17,28 @@ function plot(history, cycles) {
   bests.setAttribute("points", line(1));
 }
 
+// A search by trees has no ants, and its ribbons are branches.
+function label(trees) {
+  byId("trails").textContent = trees ? "trees" : "pheromone";
+  byId("ants").style.display = trees ? "none" : "";
+}
+
 function draw(cycle) {
+  const trees = cycle.nodes !== undefined;
+  label(trees);
   run(cycle.commands);
   plot(cycle.history, cycle.cycles);
   for (const end of ["x1", "x2"]) marker.setAttribute(end, 1000 * cycle.number / cycle.cycles);
   const best = cycle.best === null ? "none yet" : cycle.best.toFixed(3);
-  summary = `cycle ${cycle.number} of ${cycle.cycles}   best F ${best}`;
-  report(`${summary}\n${cycle.distinct} different paths of ${cycle.ants} ants`, true);
+  summary = `${trees ? "round" : "cycle"} ${cycle.number} of ${cycle.cycles}   best F ${best}`;
+  const work = trees ? `${cycle.nodes} nodes, ${cycle.checks} checks`
+    : `${cycle.distinct} different paths of ${cycle.ants} ants`;
+  report(`${summary}\n${work}`, true);
   last = Date.now();
   document.title = `${++shown} shown: ${data.title}`;
 }
 
+label(data.trees);
 const source = new EventSource("events");
 source.onmessage = event => {
   const message = JSON.parse(event.data);

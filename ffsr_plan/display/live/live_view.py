@@ -1,26 +1,25 @@
-"""Live view of a colony in a browser on this machine."""
+"""Live view of a search in a browser on this machine."""
 
 from __future__ import annotations
 
 import json
 import math
 import time
+from collections.abc import Callable
 from functools import cache
 
 from ffsr_plan.core.checks import number, text, truth
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display.browser import in_notebook, open_in_browser
-from ffsr_plan.display.cycle_picture import Snapshot, commands, take
-from ffsr_plan.display.meshcat_objects import CommandLog
+from ffsr_plan.display.live import tree_picture
+from ffsr_plan.display.live.cycle_picture import commands, take
+from ffsr_plan.display.live.opening_page import opening_page
 from ffsr_plan.display.page_server import PageServer
-from ffsr_plan.display.picture_data import drawn_solid, motion_frames
 from ffsr_plan.display.plan_page import page
-from ffsr_plan.display.scene_objects import add_ends, add_obstacles, set_up
-from ffsr_plan.display.web.html_template import html_page
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.search.records import Cycle
+from ffsr_plan.search.records import Cycle, TreeCycle
 
 _LEAST_INTERVAL = 0.1  # between two pictures [s]
 _TIME_SHARE = 0.02  # of the computing time, at most, is spent on pictures
@@ -29,7 +28,7 @@ _BROWSER_TIMEOUT = 5.0  # [s] that a browser has to load the page before the sea
 
 
 class LiveView:
-    """A page that shows a colony during the search, and finally its plan.
+    """A page that shows a search while it goes on, and finally its plan.
 
     ```python
     with fp.LiveView(problem) as view:
@@ -37,9 +36,11 @@ class LiveView:
         view.finish(plan)
     ```
 
-    Ribbons show pheromone in excess of the least one, dots show the ants of the cycle (larger where
-    there are more), and the best path so far is yellow. The view does not change the plan. The page
-    shows the newest cycle, at most ten a second.
+    Of a colony, ribbons show pheromone in excess of the least one, and dots the ants of the cycle
+    (larger where there are more). Of a search by trees, ribbons show the branches of the last two
+    trees, that from the start brighter, and the robot stands at the end of the best path; where the
+    robot floats, branches are not drawn. The best path so far is yellow. The view does not change
+    the plan. The page shows the newest cycle, at most ten a second.
 
     Attributes:
         url: address of the page, on 127.0.0.1.
@@ -72,28 +73,31 @@ class LiveView:
         opens = not in_notebook() if open_browser is None else truth("open_browser", open_browser)
         self._pace = number("pace", pace, at_least=0.0, at_most=60.0)
         self._title = title = text("title", title)
-        self._lattice = LayeredLattice(problem)
+        self._problem = problem
+        self._lattice = None if problem.lattice is None else LayeredLattice(problem)
         self._history: list[tuple[int, float | None, float | None]] = []
         self._next_picture = self._last_cycle = -math.inf
-        self._server = PageServer(_page(self._lattice, title), port)
+        self._server = PageServer(opening_page(problem, self._lattice, title), port)
         self.url = self._server.url
         if opens and open_in_browser(self.url):
             self._server.wait_for_listener(_BROWSER_TIMEOUT)
 
-    def on_cycle(self, cycle: Cycle) -> None:
+    def on_cycle(self, cycle: Cycle | TreeCycle) -> None:
         """Show a cycle. Pass this method as `plan(on_cycle=...)`.
 
         Args:
-            cycle: the cycle that the colony has completed.
+            cycle: the cycle that the colony has completed, or the round of a search by trees.
 
         Raises:
             InvalidInput: the cycle belongs to another lattice.
         """
         begin = time.monotonic()
+        if self._history and cycle.number <= self._history[-1][0]:
+            self._history.clear()  # another search begins, such as the trees of a portfolio
         entry = (cycle.number, _known(cycle.best), _known(cycle.iteration_best))
         self._history.append(entry)
         if begin >= self._next_picture or cycle.number == cycle.cycles:
-            self._show(take(cycle, self._lattice), cycle)
+            self._show(cycle)
             end = time.monotonic()
             self._next_picture = end + max(_LEAST_INTERVAL, (end - begin) / _TIME_SHARE)
         remaining = self._last_cycle + self._pace - time.monotonic()
@@ -120,20 +124,32 @@ class LiveView:
         """Stop the server. Open pages stay as they are."""
         self._server.stop()
 
-    def _show(self, snapshot: Snapshot, cycle: Cycle) -> None:
+    def _show(self, cycle: Cycle | TreeCycle) -> None:
+        facts, commands_of_picture = self._picture(cycle)
         step = -(-len(self._history) // _CURVE_POINTS)
-        facts = {
+        facts |= {
             "number": cycle.number,
-            "cycles": cycle.cycles,
+            "cycles": max(cycle.number, cycle.cycles),
             "best": _known(cycle.best),
-            "distinct": cycle.distinct,
-            "ants": int(snapshot.counts[0].sum()),
             "history": [*self._history[:-1:step], self._history[-1]],
         }
-        lattice = self._lattice
         self._server.publish(
-            cache(lambda: json.dumps({**facts, "commands": commands(snapshot, lattice)}))
+            cache(lambda: json.dumps({**facts, "commands": commands_of_picture()}))
         )
+
+    def _picture(
+        self, cycle: Cycle | TreeCycle
+    ) -> tuple[dict[str, object], Callable[[], list[str]]]:
+        """What the page says of a cycle, and a function that draws it."""
+        if isinstance(cycle, TreeCycle):
+            said: dict[str, object] = {"checks": cycle.checks, "nodes": cycle.nodes}
+            return said, lambda: tree_picture.commands(cycle, self._problem)
+        lattice = self._lattice
+        if lattice is None:
+            raise InvalidInput("cycle", "one of a colony", "rounds of trees, without a lattice")
+        snapshot = take(cycle, lattice)
+        ants = int(snapshot.counts[0].sum())
+        return {"distinct": cycle.distinct, "ants": ants}, lambda: commands(snapshot, lattice)
 
     def __enter__(self) -> LiveView:
         if in_notebook():
@@ -153,31 +169,6 @@ class LiveView:
 
     def _repr_html_(self) -> str:
         return self._server._repr_html_()
-
-
-def _page(lattice: LayeredLattice, title: str) -> str:
-    """The page before the first cycle. The camera sees the inner half of the lattice."""
-    import meshcat
-
-    log = CommandLog()
-    viewer = meshcat.Visualizer(window=log)
-    problem, scene = lattice.problem, lattice.problem.scene
-    straight = lattice.nominal.configurations()
-    frames = motion_frames(problem.robot, straight)
-    centers, radii = frames.bounding_spheres()
-    corners = 0.5 * lattice.offsets[[0, lattice.origin, -1]]  # few ants go farther out
-    view = set_up(viewer, problem, centers + corners[:, None, None], radii)
-    add_obstacles(viewer["obstacles"], scene, drawn_solid(scene, centers))
-    goal = problem.goal if problem.reach_attitude else straight[-1]
-    add_ends(viewer, problem.robot, problem.start, goal)
-    data = {
-        "title": title or f"{problem.robot.name}, {problem.mode}",
-        "subtitle": f"search over {lattice.divisions} edges, {lattice.size} offsets a layer, "
-        f"δ {problem.delta:g}",
-        "commands": log.commands,
-        "view": view,
-    }
-    return html_page("live", data)
 
 
 def _known(value: float) -> float | None:

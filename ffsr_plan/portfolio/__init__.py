@@ -1,0 +1,1 @@
+"""A lattice and the whole space, searched one after the other."""
