@@ -54,9 +54,9 @@ def test_first_plans_touch_nothing_when_flown(kind, block):
 
 @pytest.mark.parametrize("kind", COUNTS)
 def test_improved_plans_touch_nothing_when_flown(kind):
-    for number in range(3):
-        problem = problem_of(kind, number)
-        touches_nothing(fp.plan(problem, fp.TreePlanner(checks=500_000), number))
+    for number in range(2):
+        planner = fp.TreePlanner(checks=None if kind == 2 else 400_000)  # a gap takes more to find
+        touches_nothing(fp.plan(problem_of(kind, number), planner, number))
 
 
 def turned(problem, angle):
@@ -85,6 +85,6 @@ def test_a_base_that_did_not_react_would_be_noticed():
         plan = fp.plan(problem, fp.TreePlanner(), seed, until="first")
         touches_nothing(plan)
         path, corners = flown(plan, reacts=False)
-        assert angle_between(path[corners[-1], 3:7], plan.configurations[-1, 3:7]) > 0.001
+        assert angle_between(path[corners, 3:7], plan.configurations[:, 3:7]).max() > 0.05
         caught += least_gap(plan, path)[0] < 0.0
     assert caught
