@@ -30,7 +30,7 @@ def _way_is_clear(search, ends, attitude, assumed, step):
     """Whether states at most `step` apart on the way between two of them are clear."""
     start, begin, end = ends
     arrival, state = np.empty(4), np.empty(len(begin))
-    count = max(1, int(math.ceil(np.sqrt(np.sum((end - begin) ** 2)) / step)))
+    count = max(1, math.ceil(np.sqrt(np.sum((end - begin) ** 2)) / step))
     for k in range(count + 1):
         state[:] = begin + k / count * (end - begin)
         if not _clear(search, start, attitude, state, assumed, arrival):

@@ -53,6 +53,7 @@ class Ways(ob.MotionValidator):
         self._checker, self._size = checker, len(checker.free)
 
     def checkMotion(self, begin, end, *last):  # noqa: N802 - OMPL's name
+        """Whether the way between two states is clear; OMPL calls it."""
         both = [self._checker.state([s[k] for k in range(self._size)]) for s in (begin, end)]
         return not last and self._checker.clear(*both, STEP)
 
@@ -179,21 +180,21 @@ HEAD = (
     "collide as assumed; collide when flown (deepest); free when flown"
 )
 NOTES = f"""
-- Comparable: the space (base position in the problem's window, joints in their limits), the compiled
-  distances to spheres and between links, a margin of 1 mm, the length L, and the flight by which
-  all paths are judged: it samples every .02 rad and .01 m and uses neither planner nor proof.
+- Comparable: the space (base position in the problem's window, joints in their limits), the
+  compiled distances to spheres and between links, a margin of 1 mm, the length L, and the flight by
+  which all paths are judged: it samples every .02 rad and .01 m and uses neither planner nor proof.
 - Attitude: held as at the start, or that of the straight flight from the start to each state. The
   second is exact for states on the first edge of a path only. A planner whose states carry no
-  attitude can do no better without searching over paths, as `{OURS}` does.
-- Ways are checked at states {STEP:g} (m or rad) apart by one call from OMPL into Python and from there
-  into compiled code; `{OURS}` is compiled as a whole, proves its paths, and its time includes
-  the proof. Times therefore say little about the algorithms; what is free when flown does.
-- Collide as assumed: the path collides at the attitude that was assumed, checked every {FINE:g}: what
-  the spacing of checks misses. The rest of the collisions are due to the reaction.
-- Where the goal is not free at the attitude held, there is nothing to search: not found. L includes
-  paths that collide when flown; those may be shorter than any that is free.
-- The optimising planners run for the whole time. AIT* was asked for; OMPL's Python package 2.0.1
-  does not offer it, and InformedRRTstar is in its place.
+  attitude can hardly do better; `{OURS}` carries the true one along its trees.
+- Not comparable: times. OMPL's ways are checked at states {STEP:g} (m or rad) apart, by one call
+  from OMPL into Python and from there into compiled code for each way; `{OURS}` is compiled as a
+  whole, and its time includes the proof. OMPL's settings are its defaults.
+- Collide as assumed: the path collides at the attitude that was assumed, checked every {FINE:g};
+  that is what the spacing of checks misses. The other collisions are due to the reaction.
+- Where the goal is not free at the attitude assumed there is nothing to search: not found. L is
+  that of all paths found, also of those that collide when flown.
+- The optimising planners run for the whole time. OMPL's Python package 2.0.1 does not offer AIT*;
+  InformedRRTstar is in its place.
 """
 
 
@@ -225,8 +226,7 @@ def main():
     spent = (time.process_time() - begin) / 60.0
     text = f"""# Side by side with OMPL, without a lattice
 
-`python -m benchmarks.studies.general.ompl_free_space --count {args.count} --seconds
-{args.seconds:g}`
+`python -m benchmarks.studies.general.ompl_free_space --count {args.count} --seconds {args.seconds:g}`
 
 The first {args.count} problems of kinds 1 to 5 of `problems.json`; at most {args.seconds:g} s a
 run, OMPL 2.0.1. Times are processor time of one thread; {spent:.0f} minutes in all.
