@@ -224,9 +224,10 @@ def main():
     last = f"{OURS}, {args.seconds:g} s"
     best = {key: run.length for key, run in runs if run.planner == last and run.path is not None}
     spent = (time.process_time() - begin) / 60.0
+    options = f"--count {args.count} --seconds {args.seconds:g}"
     text = f"""# Side by side with OMPL, without a lattice
 
-`python -m benchmarks.studies.general.ompl_free_space --count {args.count} --seconds {args.seconds:g}`
+`python -m benchmarks.studies.general.ompl_free_space {options}`
 
 The first {args.count} problems of kinds 1 to 5 of `problems.json`; at most {args.seconds:g} s a
 run, OMPL 2.0.1. Times are processor time of one thread; {spent:.0f} minutes in all.
