@@ -193,8 +193,8 @@ NOTES = f"""
   that is what the spacing of checks misses. The other collisions are due to the reaction.
 - Where the goal is not free at the attitude assumed there is nothing to search: not found. L is
   that of all paths found, also of those that collide when flown.
-- The first path of `{OURS}` may take the default number of checks; the other row has {CHECKS_A_SECOND:,} a
-  second of the limit, and finds nothing where these are too few for a first path.
+- The first path of `{OURS}` may take the default number of checks; the other row has
+  {CHECKS_A_SECOND:,} a second of the limit, and finds nothing where these are too few for a path.
 - The optimising planners run for the whole time. OMPL's Python package 2.0.1 does not offer AIT*;
   InformedRRTstar is in its place.
 """
