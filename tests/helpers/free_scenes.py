@@ -28,6 +28,14 @@ def scattered(robot, seed, mode="free-flying", **options):
             return fp.Problem(robot, scene, *ends, mode, **options)
 
 
+def held_turn(problem, angle):
+    """The same problem in the mode attitude-held, ending at an attitude about z [rad]."""
+    quat = np.array([0.0, 0.0, np.sin(0.5 * angle), np.cos(0.5 * angle)])
+    robot, goal = problem.robot, problem.goal
+    turned = robot.assemble(goal[:3], quat, robot.joint_values(goal))
+    return fp.Problem(robot, problem.scene, problem.start, turned, "attitude-held")
+
+
 def wall(x, low, high, radius):
     count = max(2, int(np.ceil((high - low) / (1.2 * radius))) + 1)
     return [[x, y, 0.0] for y in np.linspace(low, high, count)], [radius] * count

@@ -78,21 +78,24 @@ def course_of(plan, duration, parts=1):
 
     A joint path with corners is followed exactly if every edge goes from rest to rest, `parts`
     being the number of edges. The wheels rotate the base at a rate proportional to that of the
-    path parameter.
+    path parameter, edge by edge by the motion's shares of the whole turn where it has some.
     """
     corners = np.hstack([plan.motion.positions, plan.motion.joint_values])
     edges, start = len(corners) - 1, plan.problem.start[3:7]
     whole = rotations.log(rotations.multiply(rotations.inverse(start), plan.problem.goal[3:7]))
+    shares = plan.motion.turn_shares
+    shares = np.linspace(0.0, 1.0, edges + 1) if shares is None else shares
 
     def course(t):
         s, speed, acceleration = progress(t, duration, parts)
         k = min(int(s * edges), edges - 1)
         way = (corners[k + 1] - corners[k]) * edges
         place = corners[k] + (s - k / edges) * way
-        turned = rotations.multiply(start, rotations.exp(s * whole))
+        spin = (shares[k + 1] - shares[k]) * edges * whole
+        turned = rotations.exp(shares[k] * whole + (s - k / edges) * spin)
         return Course(
             (place[:3], speed * way[:3], acceleration * way[:3]),
-            (turned, speed * whole, acceleration * whole),
+            (rotations.multiply(start, turned), speed * spin, acceleration * spin),
             (place[3:], speed * way[3:], acceleration * way[3:]),
         )
 

@@ -19,7 +19,7 @@ from ffsr_plan.cli import planning
 from ffsr_plan.cli.commands import app
 from ffsr_plan.core import bundled_files, cost_estimate
 from tests.helpers.mutated_toml import mutated, text_of
-from tests.helpers.urdf_distances import least_distance
+from tests.helpers.urdf_distances import least_distances
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -69,10 +69,10 @@ def agrees(plan):
     problem = plan.problem
     robot, scene = problem.robot, problem.scene
     least = np.inf
-    for q in plan.at(np.linspace(0.0, 1.0, SAMPLES)):
+    for q in plan.at(np.linspace(0.0, 1.0, SAMPLES))[:, None]:  # one at a time, to save memory
         parts = robot.components(q)
-        here = (parts.position, q[3:7], parts.joints)
-        least = min(least, least_distance(robot.urdf, *here, scene.centers, scene.radii))
+        here = (parts.position, q[:, 3:7], parts.joints)
+        least = min(least, least_distances(robot.urdf, *here, scene.centers, scene.radii)[0])
     claimed = plan.certificate.least_clearance
     return bool(least > 0.0 and (claimed <= least + 1e-6 or not np.isfinite(least)))
 

@@ -1,7 +1,7 @@
 """Distances of a robot's boxes, spheres and capsules to spheres, from the URDF text alone.
 
 Written apart from the package: poses by 4 x 4 matrices, distances by the textbook. Shapes of other
-kinds are left out.
+kinds are left out. All poses of a robot are taken at once: N rotations are (N, 3, 3).
 """
 
 from xml.etree import ElementTree
@@ -22,8 +22,10 @@ def rotation(roll, pitch, yaw):
 
 
 def frame(rotated, moved):
-    result = np.eye(4)
-    result[:3, :3], result[:3, 3] = rotated, moved
+    """(..., 4, 4) of rotations (..., 3, 3) and translations (..., 3)."""
+    shape = np.broadcast_shapes(np.shape(rotated)[:-2], np.shape(moved)[:-1])
+    result = np.zeros((*shape, 4, 4))
+    result[..., :3, :3], result[..., :3, 3], result[..., 3, 3] = rotated, moved, 1.0
     return result
 
 
@@ -34,19 +36,21 @@ def origin(element):
     return frame(rotation(*numbers(found, "rpy", "0 0 0")), numbers(found, "xyz", "0 0 0"))
 
 
-def of_joint(joint, value):
+def of_joint(joint, values):
+    """(N, 4, 4) displacement by values (N,) [rad or m]."""
     found = joint.find("axis")
     axis = np.array([1.0, 0, 0]) if found is None else numbers(found, "xyz", "1 0 0")
     axis = axis / np.linalg.norm(axis)
     if joint.get("type") == "prismatic":
-        return frame(np.eye(3), value * axis)
+        return frame(np.eye(3), values[:, None] * axis)
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return frame(np.eye(3) + np.sin(value) * cross + (1 - np.cos(value)) * cross @ cross, 0.0)
+    sine, cosine = np.sin(values)[:, None, None], np.cos(values)[:, None, None]
+    return frame(np.eye(3) + sine * cross + (1 - cosine) * cross @ cross, np.zeros(3))
 
 
 def link_frames(root, base, values):
-    """Frames (4, 4) of all links by name; `values` by joint [rad or m]."""
+    """Frames (N, 4, 4) of all links by name, of bases (N, 4, 4) and values (N,) by joint."""
     joints = root.findall("joint")
     children = {joint.find("child").get("link") for joint in joints}
     (top,) = {link.get("name") for link in root.findall("link")} - children
@@ -55,45 +59,50 @@ def link_frames(root, base, values):
         for joint in joints:
             parent, child = (joint.find(end).get("link") for end in ("parent", "child"))
             if parent in frames and child not in frames:
-                moved = of_joint(joint, values.get(joint.get("name"), 0.0))
+                moved = of_joint(joint, values.get(joint.get("name"), np.zeros(1)))
                 frames[child] = frames[parent] @ origin(joint) @ moved
     return frames
 
 
 def to_shape(geometry, points):
-    """Signed distances of points (N, 3) in the shape's frame; inf for other shapes."""
+    """Signed distances (...) of points (..., 3) in the shape's frame; inf for other shapes."""
     shape = geometry[0]
     if shape.tag == "sphere":
-        return np.linalg.norm(points, axis=1) - float(shape.get("radius"))
+        return np.linalg.norm(points, axis=-1) - float(shape.get("radius"))
     if shape.tag == "capsule":
         half = 0.5 * float(shape.get("length"))
-        along = np.clip(points[:, 2], -half, half)
-        return np.hypot(np.hypot(*points[:, :2].T), points[:, 2] - along) - float(
-            shape.get("radius")
-        )
+        beyond = points[..., 2] - np.clip(points[..., 2], -half, half)
+        aside = np.hypot(points[..., 0], points[..., 1])
+        return np.hypot(aside, beyond) - float(shape.get("radius"))
     if shape.tag == "box":
         beyond = np.abs(points) - 0.5 * numbers(shape, "size", "")
-        outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
-        return outside + np.minimum(beyond.max(axis=1), 0.0)
-    return np.full(len(points), np.inf)
+        outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
+        return outside + np.minimum(beyond.max(axis=-1), 0.0)
+    return np.full(points.shape[:-1], np.inf)
 
 
-def least_distance(urdf, position, quat_xyzw, values, centers, radii):
-    """Least distance [m] of the robot at one pose to spheres (N, 3), (N,)."""
-    x, y, z, w = quat_xyzw
-    turned = np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-    root, least = ElementTree.fromstring(urdf), np.inf
-    frames = link_frames(root, frame(turned, position), values)
+def rotations_of(quats_xyzw):
+    """(N, 3, 3) of unit quaternions (N, 4)."""
+    x, y, z, w = quats_xyzw.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)
+
+
+def least_distances(urdf, positions, quats_xyzw, values, centers, radii):
+    """Least distances (N,) [m] of the robot at N poses to spheres (K, 3), (K,).
+
+    `values` are (N,) for each joint by name [rad or m].
+    """
+    root, least = ElementTree.fromstring(urdf), np.full(len(positions), np.inf)
+    frames = link_frames(root, frame(rotations_of(quats_xyzw), positions), values)
     for link in root.findall("link"):
         for collision in link.findall("collision"):
             placed = frames[link.get("name")] @ origin(collision)
-            local = (centers - placed[:3, 3]) @ placed[:3, :3]
+            local = (centers - placed[:, None, :3, 3]) @ placed[:, :3, :3]
             distances = to_shape(collision.find("geometry"), local) - radii
-            least = min(least, float(np.min(distances, initial=np.inf)))
+            np.minimum(least, np.min(distances, axis=1, initial=np.inf), out=least)
     return least

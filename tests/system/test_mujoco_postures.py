@@ -16,11 +16,13 @@ from tests.search.postures.test_turning import turning
 
 pytest.importorskip("mujoco", minversion="4")
 
-from tests.helpers import mujoco_flight as engine  # it cannot be imported where there is no MuJoCo
+from tests.helpers import (
+    mujoco_flight as engine,
+)  # they cannot be imported where there is no MuJoCo
+from tests.helpers.mujoco_plans import RECORDED, departures, flown
 
 AGREEMENT = 1e-5  # [rad], [m] and relative; half the step leaves a sixteenth of what is found
 FOLLOWED = 1e-6  # [rad], joints
-EDGE, STEP = 2.0, 0.02  # [s] for each edge and for each step of the engine
 
 
 def gate(**changes):
@@ -40,28 +42,6 @@ TURNING = {
 }
 
 
-def flown(plan):
-    """The flight, recorded ten times an edge, with s, its rate and acceleration at these times."""
-    edges = plan.motion.edges
-    course = engine.course_of(plan, edges * EDGE, parts=edges)
-    flight = engine.fly(plan.problem.robot, plan.problem.mode, course, edges * EDGE, STEP, every=10)
-    assert len(flight.times) == 10 * edges + 1
-    return flight, engine.progress(flight.times, edges * EDGE, parts=edges)
-
-
-def departures(plan, flight, s):
-    """Largest angle [rad] and distance [m] of the base, and change of a joint, from the plan."""
-    planned = plan.at(s)
-    planned[::10] = plan.configurations  # at the corners
-    joints = np.abs(flight.joints - plan.problem.robot.joint_values(planned))
-    turned = rotations.angle_between(flight.attitudes, planned[:, 3:7])
-    return (
-        turned.max(),
-        np.linalg.norm(flight.positions - planned[:, :3], axis=1).max(),
-        joints.max(),
-    )
-
-
 def bend(plan):
     """How far [rad] the joint path leaves the straight line between its ends."""
     path = plan.motion.joint_values
@@ -72,8 +52,8 @@ def bend(plan):
 @pytest.mark.parametrize("name", TURNING)
 def test_mujoco_rotates_the_base_to_the_goal_attitude(name):
     plan = fp.plan(TURNING[name](), seed=0)
-    flight, (s, *_) = flown(plan)
-    turned, away, joints = departures(plan, flight, s)
+    flight, _ = flown(plan)
+    turned, away, joints = departures(plan, flight)
     assert bend(plan) > 0.5
     assert rotations.angle_between(flight.attitudes[0], flight.attitudes).max() > 0.1
     assert joints < FOLLOWED
@@ -89,13 +69,13 @@ def test_mujocos_wheels_store_the_momentum_that_is_planned():
     goal = gate().robot.configuration((10.0, 0.0, 0.0), (0.4, 0.0, 0.0))
     plan = fp.plan(gate(mode="attitude-held", reach_attitude=False, goal=goal), seed=0)
     flight, (s, rate, _) = flown(plan)
-    turned, away, joints = departures(plan, flight, s)
+    turned, away, joints = departures(plan, flight)
     assert bend(plan) > 0.5
     assert joints < FOLLOWED
     assert turned < AGREEMENT
     assert away < AGREEMENT
     # stored momentum goes as ds/dt: here in the middle of the edges, there with no halts
-    middles = slice(5, None, 10)
+    middles = slice(RECORDED // 2, None, RECORDED)
     clock = np.linspace(0.0, 1.0, 100_001)
     clock = np.interp(s[middles], engine.progress(clock, 1.0)[0], clock)
     without = plan.wheel_momentum(1.0, clock).world
