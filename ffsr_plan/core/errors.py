@@ -295,11 +295,13 @@ class PathNotFound(PlanningError):
         if self.attitude_missed is not None:
             degrees = math.degrees(self.attitude_missed)
             text += f"; the best path misses the goal's attitude by {self.attitude_missed:.3g} rad "
-            return text + f"({degrees:.3g} degrees)" + helping(self.advice)
-        text += f"; the trees came as near to each other as {self.apart:.3g} m"
-        if self.contact is not None:
-            link, obstacle, depth, source = self.contact
-            text += f", with link '{link}' {-depth:.3g} m from {obstacle_name(obstacle, source)}"
+            text += f"({degrees:.3g} degrees)"
+        else:
+            text += f"; the trees came as near to each other as {self.apart:.3g} m"
+            if self.contact is not None:
+                link, obstacle, depth, source = self.contact
+                text += f", with link '{link}' {-depth:.3g} m from "
+                text += obstacle_name(obstacle, source)
         text += helping(self.advice)
         return f"{text}. On the lattice: {self.on_lattice}" if self.on_lattice else text
 

@@ -110,6 +110,9 @@ def test_without_a_path_to_the_attitude_the_error_says_by_how_much_it_is_missed(
         fp.plan(turned(robot, (2.9, 0.0, 0.0)), fp.TreePlanner(checks=3_000))
     assert 0.01 < info.value.attitude_missed <= np.pi
     assert "a goal attitude nearer to that of the start" in info.value.advice
+    both = replace(info.value, on_lattice="layer 3 cannot be passed")
+    assert str(both).endswith("On the lattice: layer 3 cannot be passed")
+    assert "misses the goal's attitude" in str(both)
 
 
 def on_the_spot(robot, degrees, **options):
