@@ -200,7 +200,7 @@ class Problem:
     @cached_property
     def obstacles(self) -> Scene:
         """The scene, its spheres larger by `min_clearance`: what plans keep clear of."""
-        return self.scene.grown(self.min_clearance) if self.min_clearance > 0.0 else self.scene
+        return self.scene.grown(self.min_clearance)
 
     @property
     def base_displacement(self) -> Array:

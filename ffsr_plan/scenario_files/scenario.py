@@ -120,8 +120,7 @@ def _scenario(file: ScenarioFile, folder: Path) -> Scenario:
     base_goal = start[:3] if base_stays else file.goal.base_position
     scene = _scene(file, folder, [start[:3], base_goal])
     with _in_table("goal"):
-        kept = file.objective.min_clearance
-        around = scene.grown(kept) if kept > 0.0 else scene
+        around = scene.grown(file.objective.min_clearance)
         goals = file.goal.configurations(robot, around, start, mode)
     demanded = file.goal.attitude is not None or file.goal.end_effector is not None
     problem = Problem(

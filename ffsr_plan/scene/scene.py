@@ -78,8 +78,10 @@ class Scene:
         """The same spheres with larger radii; the names of their sources say so.
 
         Args:
-            by: what is added to all radii [m].
+            by: what is added to all radii [m]; with 0 it is the same scene.
         """
+        if by == 0.0:
+            return self
         names = self.sources or (("the scene", len(self.radii)),) * (len(self.radii) > 0)
         sources = [(f"{name}, grown by {by:g} m", count) for name, count in names]
         return Scene(self.centers, self.radii + by, self.excess, sources)

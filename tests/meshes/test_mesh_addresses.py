@@ -1,9 +1,12 @@
 """Addresses of mesh files: packages as ROS finds them, escapes, and what an error says."""
 
+import numpy as np
 import pytest
+import trimesh
 
 import ffsr_plan as fp
 from ffsr_plan.meshes.mesh_addresses import find, found
+from ffsr_plan.meshes.mesh_files import hull_corners
 from tests.helpers.single_link_robots import MASS, blob
 from tests.helpers.urdf_builders import link, mesh, urdf
 
@@ -140,3 +143,51 @@ def test_pictures_show_meshes_of_packages_too(workspace):
     shape = mesh("package://tool_meshes/b.stl")
     path.write_text(urdf(link("base", MASS, shape, shape.replace("collision", "visual"))))
     assert fp.load_robot(path).visual_model.ngeoms == 1
+
+
+def test_mesh_addresses_are_packages_paths_or_files(tmp_path):
+    (tmp_path / "pkg").mkdir()
+    blob(3).export(tmp_path / "pkg" / "blob.stl")
+    path = tmp_path / "pkg" / "robot.urdf"
+    for address in ("package://pkg/blob.stl", "blob.stl", f"file://{tmp_path}/pkg/blob.stl"):
+        path.write_text(urdf(link("base", MASS, mesh(address))))
+        robot = fp.load_robot(path, [tmp_path])
+        assert list(robot.meshes) == [address]
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "gone.stl",
+        "package://pkg/gone.stl",
+        "file:///gone.stl",
+        "http://127.0.0.1/a.stl",
+        "bad.stl",
+        "flat.stl",
+        "robot.urdf",
+        "bad.dae",
+    ],
+)
+def test_a_mesh_that_cannot_be_used_is_named_with_its_link(tmp_path, address):
+    (tmp_path / "127.0.0.1").mkdir()
+    blob(0).export(tmp_path / "127.0.0.1" / "a.stl")  # where a part of the address would lead
+    (tmp_path / "bad.stl").write_text("no mesh at all")
+    (tmp_path / "bad.dae").write_text("<COLLADA>")
+    trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2], [1, 2, 3]]).export(
+        tmp_path / "flat.stl"
+    )
+    path = tmp_path / "robot.urdf"
+    path.write_text(urdf(link("base", MASS, mesh(address))))
+    with pytest.raises(fp.InvalidInput, match="link 'base'") as caught:
+        fp.load_robot(path)
+    assert address in str(caught.value)
+
+
+def test_the_unit_that_a_dae_names_is_applied(tmp_path):
+    path = tmp_path / "blob.dae"
+    blob(5).export(path)
+    exported = path.read_text()
+    metres = hull_corners("blob.dae", [str(tmp_path)], "")
+    path.write_text(exported.replace("<up_axis>", "<unit name='inch' meter='0.0254'/><up_axis>"))
+    inches = hull_corners("blob.dae", [str(tmp_path)], "")
+    assert np.allclose(inches, 0.0254 * metres)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import ffsr_plan as fp
 from ffsr_plan.collision.distances import SelfQuery
-from ffsr_plan.meshes.mesh_files import hull, hull_corners
+from ffsr_plan.meshes.mesh_files import hull
 from ffsr_plan.robots.collision_shapes import Containers, convex, sharpen
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.verification.solids import Shape
@@ -294,44 +294,6 @@ def test_shapes_are_recorded_and_exact_ones_are_not(tmp_path):
     assert fp.clearance(twin, scene, q) == fp.clearance(robot, scene, q)
 
 
-def test_mesh_addresses_are_packages_paths_or_files(tmp_path):
-    (tmp_path / "pkg").mkdir()
-    blob(3).export(tmp_path / "pkg" / "blob.stl")
-    path = tmp_path / "pkg" / "robot.urdf"
-    for address in ("package://pkg/blob.stl", "blob.stl", f"file://{tmp_path}/pkg/blob.stl"):
-        path.write_text(urdf(link("base", MASS, mesh(address))))
-        robot = fp.load_robot(path, [tmp_path])
-        assert list(robot.meshes) == [address]
-
-
-@pytest.mark.parametrize(
-    "address",
-    [
-        "gone.stl",
-        "package://pkg/gone.stl",
-        "file:///gone.stl",
-        "http://127.0.0.1/a.stl",
-        "bad.stl",
-        "flat.stl",
-        "robot.urdf",
-        "bad.dae",
-    ],
-)
-def test_a_mesh_that_cannot_be_used_is_named_with_its_link(tmp_path, address):
-    (tmp_path / "127.0.0.1").mkdir()
-    blob(0).export(tmp_path / "127.0.0.1" / "a.stl")  # where a part of the address would lead
-    (tmp_path / "bad.stl").write_text("no mesh at all")
-    (tmp_path / "bad.dae").write_text("<COLLADA>")
-    trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2], [1, 2, 3]]).export(
-        tmp_path / "flat.stl"
-    )
-    path = tmp_path / "robot.urdf"
-    path.write_text(urdf(link("base", MASS, mesh(address))))
-    with pytest.raises(fp.InvalidInput, match="link 'base'") as caught:
-        fp.load_robot(path)
-    assert address in str(caught.value)
-
-
 BAD_SHAPES = [
     ("<capsule radius='0' length='1'/>", "capsule, radius.*greater than 0"),
     ("<capsule radius='1'/>", "capsule, length.*1 finite number"),
@@ -365,16 +327,6 @@ def test_unknown_containers_are_refused():
             one_link(box((1, 1, 1)), containers=wrong)
     with pytest.raises(fp.InvalidInput, match="did you mean 'capsule'"):
         fp.load_robot("point", cylinders="capsules")
-
-
-def test_the_unit_that_a_dae_names_is_applied(tmp_path):
-    path = tmp_path / "blob.dae"
-    blob(5).export(path)
-    exported = path.read_text()
-    metres = hull_corners("blob.dae", [str(tmp_path)], "")
-    path.write_text(exported.replace("<up_axis>", "<unit name='inch' meter='0.0254'/><up_axis>"))
-    inches = hull_corners("blob.dae", [str(tmp_path)], "")
-    assert np.allclose(inches, 0.0254 * metres)
 
 
 @given(seeds)

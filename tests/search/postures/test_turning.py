@@ -9,13 +9,12 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
-from ffsr_plan.dynamics.attitude_correction import attitude_slopes, corrected
 from ffsr_plan.dynamics.reaction import Reaction
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.search.postures import posture_lattice
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import CORRECTABLE
-from ffsr_plan.search.postures.posture_lattice import PostureLattice, displacements
+from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from tests.helpers.spatial_robot import curvatures, spatial_problem
 from tests.helpers.turning_dynamic_programme import turning_oracle
 
@@ -176,56 +175,6 @@ def test_the_same_seed_and_a_file_give_the_same_plan(tmp_path):
     assert loaded == plan
     assert loaded.arrival_attitude_error == plan.arrival_attitude_error
     assert loaded.verify(20).ok
-
-
-def test_the_correction_closes_the_error_and_keeps_the_ends():
-    motion = quick().motion
-    robot, path = motion.robot, motion.joint_values
-    directions = displacements(quick().problem, np.tile(path[0], (len(path), 1)))
-    start, goal = rotations.IDENTITY, rotations.from_angles((math.radians(20.7), 0.0, 0.0))
-    bent = corrected(robot, start, goal, path, directions)
-    reached = Reaction.along(robot, bent).attitudes(start)[-1]
-    assert rotations.angle_between(reached, goal) < 1e-6
-    assert np.array_equal(bent[[0, -1]], path[[0, -1]])
-
-
-def test_the_correction_keeps_limits_and_held_corners():
-    motion = quick().motion
-    robot, path = motion.robot, motion.joint_values
-    directions = displacements(quick().problem, np.tile(path[0], (len(path), 1)))
-    start, goal = rotations.IDENTITY, rotations.from_angles((math.radians(20.7), 0.0, 0.0))
-    free = corrected(robot, start, goal, path, directions)
-    assert np.any((free > path.max(axis=0) + 1e-4) | (free < path.min(axis=0) - 1e-4))
-    tight = replace(robot)
-    object.__setattr__(tight, "upper", path.max(axis=0))
-    object.__setattr__(tight, "lower", path.min(axis=0))
-    held = np.arange(len(path)) < len(path) // 2
-    for bent in (
-        corrected(tight, start, goal, path, directions),
-        corrected(tight, start, goal, path, directions, held),
-    ):
-        reached = Reaction.along(robot, bent).attitudes(start)[-1]
-        assert rotations.angle_between(reached, goal) < 1e-6
-        assert np.all((bent <= tight.upper) & (bent >= tight.lower))
-    assert np.array_equal(bent[held], path[held])
-    assert corrected(tight, start, goal, path, directions, np.ones_like(held)) is None
-
-
-def test_slopes_of_the_correction_equal_finite_differences():
-    plan = spatial(30, (0, 0, 1))
-    robot, path, h = plan.problem.robot, plan.motion.joint_values, 1e-4
-    directions = displacements(plan.problem, np.tile(path[0], (len(path), 1)))
-    slopes = attitude_slopes(robot, path, directions, Reaction.along(robot, path).increments)
-    axes = directions.shape[1]
-    for column in range(0, slopes.shape[1], 11):
-        corner, axis = 1 + column // axes, column % axes
-        ends = []
-        for sign in (1.0, -1.0):
-            moved = np.array(path)
-            moved[corner] += sign * h * directions[corner, axis]
-            ends.append(Reaction.along(robot, moved).attitudes(rotations.IDENTITY)[-1])
-        turned = rotations.log(rotations.multiply(rotations.inverse(ends[1]), ends[0])) / (2.0 * h)
-        assert slopes[:, column] == pytest.approx(turned, abs=1e-5)
 
 
 def test_the_reaction_to_many_joint_steps_is_that_to_each(monkeypatch):
