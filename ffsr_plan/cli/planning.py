@@ -177,6 +177,7 @@ def _plan_with_progress(
     from rich.progress import Progress
 
     from ffsr_plan.planning.plan_and_refine import plan as make_plan
+    from ffsr_plan.search.records import TreeCycle
 
     begin, on_terminal = time.monotonic(), err_console.is_terminal and not output.quiet
     with Progress(
@@ -187,14 +188,14 @@ def _plan_with_progress(
         def show(cycle: Cycle | TreeCycle) -> None:
             if on_cycle is not None:
                 on_cycle(cycle)
+            searching = "trees" if isinstance(cycle, TreeCycle) else "ants"
             if on_terminal and time.monotonic() - begin > _QUIET_SECONDS:
                 progress.update(
                     task,
                     visible=True,
                     total=cycle.cycles,
                     completed=cycle.number,
-                    description=f"{'trees' if hasattr(cycle, 'nodes') else 'ants'}, best F "
-                    f"{cycle.best:.2f}",
+                    description=f"{searching}, best F {cycle.best:.2f}",
                 )
                 progress.refresh()
 
