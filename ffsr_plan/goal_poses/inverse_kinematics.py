@@ -96,9 +96,11 @@ def goals_at_pose(
     base_position: ArrayLike | None,
     base_attitude: ArrayLike | None,
     seed: int,
-    tries: int,
+    tries: int | None,
 ) -> Array:
     """Like `inverse_kinematics`, but all solutions of so many descents; see `PoseSearch.several`.
+
+    Without a number of descents there is one solution, that of `inverse_kinematics`.
 
     Args:
         robot: the robot.
@@ -111,7 +113,7 @@ def goals_at_pose(
         base_position: (3,) [m], or None.
         base_attitude: (3,) [rad], or None.
         seed: a whole number >= 0.
-        tries: number of descents.
+        tries: number of descents, or None.
 
     Returns:
         (S, nq) configurations, at least one.
@@ -130,9 +132,11 @@ def goals_at_pose(
         base_attitude=base_attitude,
     )
     rng = np.random.default_rng(whole_number("seed", seed, at_least=0))
-    count = whole_number("tries", tries, at_least=1, at_most=MOST_TRIES)
+    if tries is not None:
+        tries = whole_number("tries", tries, at_least=1, at_most=MOST_TRIES)
     with _causes(target):
-        return PoseSearch(frame, target, scene, rng).several(count)
+        search = PoseSearch(frame, target, scene, rng)
+        return search.first()[None] if tries is None else search.several(tries)
 
 
 @contextmanager

@@ -114,7 +114,7 @@ class Problem:
         attitude: ArrayLike | None = None,
         *,
         seed: int = 0,
-        tries: int = DESCENTS,
+        tries: int | None = None,
     ) -> Problem:
         """The same problem with goals at which a frame has the wanted pose.
 
@@ -132,7 +132,8 @@ class Problem:
             attitude: (3,) wanted for the frame, ZYX angles [rad]; None if any will do.
             seed: a whole number >= 0.
             tries: joint values from which the pose is approached: those of the start, and random
-                ones.
+                ones. None for 16 without a lattice; on a lattice, whose planners take one goal,
+                for as many as it takes to find one.
 
         Raises:
             InvalidInput: an argument that is not allowed.
@@ -143,6 +144,8 @@ class Problem:
             The new problem; this one does not change.
         """
         held = self.mode.has_wheels
+        if tries is None and self.lattice is None:
+            tries = DESCENTS
         goals = goals_at_pose(
             self.robot,
             self.obstacles,

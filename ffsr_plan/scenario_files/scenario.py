@@ -121,7 +121,7 @@ def _scenario(file: ScenarioFile, folder: Path) -> Scenario:
     scene = _scene(file, folder, [start[:3], base_goal])
     with _in_table("goal"):
         around = scene.grown(file.objective.min_clearance)
-        goals = file.goal.configurations(robot, around, start, mode)
+        goals = file.goal.configurations(robot, around, start, mode, file.lattice is None)
     demanded = file.goal.attitude is not None or file.goal.end_effector is not None
     problem = Problem(
         robot,

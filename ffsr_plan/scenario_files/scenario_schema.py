@@ -117,14 +117,15 @@ class EndEffectorTable:
         position: (3,) wanted for the frame's origin, world [m].
         attitude: (3,) ZYX angles wanted for the frame [rad]; any attitude is accepted without it.
         seed: of the random numbers of inverse kinematics.
-        tries: joint values from which it approaches the pose.
+        tries: joint values from which it approaches the pose; without it 16 where there is no
+            lattice, and on a lattice as many as it takes to find a goal.
     """
 
     frame: Annotated[str, Text("the name of a frame")]
     position: Position
     attitude: Angles | None = None
     seed: Annotated[int, WholeNumber()] = 0
-    tries: Annotated[int, WholeNumber(at_least=1, at_most=MOST_TRIES)] = DESCENTS
+    tries: Annotated[int, WholeNumber(at_least=1, at_most=MOST_TRIES)] | None = None
 
 
 @settings
@@ -165,7 +166,9 @@ class GoalTable:
         """(3,) prescribed ZYX angles of the base [rad]."""
         return np.zeros(3) if self.attitude is None else self.attitude
 
-    def configurations(self, robot: SpaceRobot, scene: Scene, start: Array, mode: Mode) -> Array:
+    def configurations(
+        self, robot: SpaceRobot, scene: Scene, start: Array, mode: Mode, several: bool
+    ) -> Array:
         """(G, nq) goal configuration; several, by inverse kinematics, where a pose is given.
 
         Args:
@@ -173,6 +176,7 @@ class GoalTable:
             scene: obstacles, for inverse kinematics.
             start: (nq,) start configuration.
             mode: what actuates the base.
+            several: whether the planner can take several goals.
 
         Raises:
             InvalidInput: a joint, posture or frame that the robot does not have.
@@ -182,6 +186,7 @@ class GoalTable:
         if wanted is None:
             joints = joint_values(robot, self.posture, self.joints)
             return robot.configuration(self.base_position, self.base_attitude, joints)[None]
+        tries = wanted.tries or (DESCENTS if several else None)
         try:
             return goals_at_pose(
                 robot,
@@ -194,7 +199,7 @@ class GoalTable:
                 base_position=self.base_position if mode.has_thrusters else None,
                 base_attitude=self.base_attitude if mode.has_wheels else None,
                 seed=wanted.seed,
-                tries=wanted.tries,
+                tries=tries,
             )
         except InvalidInput as error:
             raise InvalidInput(f"end_effector.{error.what}", error.value, error.allowed) from None

@@ -112,7 +112,8 @@ def test_planners_on_a_lattice_take_the_first_goal():
     problem = fp.Problem(
         arm, fp.Scene(), start, arm.configuration((0.1, 0, 0)), lattice=fp.Lattice(5)
     )
-    wanted = problem.reaching("tool", PLACE)
+    assert not len(problem.reaching("tool", PLACE).alternatives)  # found, and no more looked for
+    wanted = problem.reaching("tool", PLACE, tries=16)
     assert len(wanted.alternatives)
     plan = fp.plan(wanted)
     assert np.array_equal(plan.problem.goal, wanted.goal)
