@@ -51,31 +51,34 @@ def finite_array(
     Raises:
         InvalidInput: another shape, not numbers, masked, too large, or not finite.
     """
-    wanted = "x".join("N" if n < 0 else str(n) for n in shape)
-    allowed = f"finite numbers of at most {at_most:g}, of shape ({wanted})"
+    plain = type(value) is np.ndarray and value.dtype == np.float64
     try:
         array = np.array(value, dtype=np.float64)
     except Exception:  # objects may raise anything where numpy looks at them
-        raise InvalidInput(what, value, allowed) from None
-    if _is_masked(value):
-        raise InvalidInput(what, value, f"{allowed}, none of them masked")
-    if not _holds_numbers(value):
-        raise InvalidInput(what, value, allowed)
+        raise InvalidInput(what, value, _allowed(shape, at_most)) from None
+    if not plain and _is_masked(value):
+        raise InvalidInput(what, value, f"{_allowed(shape, at_most)}, none of them masked")
+    if not plain and not _holds_numbers(value):
+        raise InvalidInput(what, value, _allowed(shape, at_most))
     if array.size == 0 and 0 in [max(n, 0) for n in shape]:
         array = array.reshape([max(n, 0) for n in shape])
     fits = array.ndim == len(shape) and all(
         n < 0 or n == got for n, got in zip(shape, array.shape, strict=True)
     )
     if not fits:
-        raise InvalidInput(f"{what} (shape {array.shape})", value, allowed)
-    wrong = ~(np.abs(array) <= at_most)  # NaN is wrong too
-    if np.any(wrong):
+        raise InvalidInput(f"{what} (shape {array.shape})", value, _allowed(shape, at_most))
+    if not np.abs(array).max(initial=0.0) <= at_most:  # NaN is wrong too
         if not array.ndim or (not row and array.size <= _MOST_SHOWN):
-            raise InvalidInput(what, value, allowed)
-        first = tuple(np.argwhere(wrong)[0].tolist())
+            raise InvalidInput(what, value, _allowed(shape, at_most))
+        first = tuple(np.argwhere(~(np.abs(array) <= at_most))[0].tolist())
         where = f"{what}, {row or 'entry'} {first[0]}"
         raise InvalidInput(where, float(array[first]), f"a finite number of at most {at_most:g}")
     return frozen(array)
+
+
+def _allowed(shape: tuple[int, ...], at_most: float) -> str:
+    wanted = "x".join("N" if n < 0 else str(n) for n in shape)
+    return f"finite numbers of at most {at_most:g}, of shape ({wanted})"
 
 
 def _is_masked(value: object) -> bool:

@@ -27,6 +27,7 @@ class NodeClearances:
 
     def __init__(self, lattice: LayeredLattice, prover: Prover) -> None:
         self._lattice, self._prover = lattice, prover
+        self._distances = np.array(lattice.distances)  # not read-only, as kernels take it
         m, n, origin = lattice.divisions, lattice.size, lattice.origin
         self.bounds: Array = np.full((m + 1, n), np.inf)
         self.known: Flags = np.zeros((m + 1, n), dtype=bool)
@@ -52,15 +53,14 @@ class NodeClearances:
         Returns:
             (k,) inner layers whose bounds have changed.
         """
+        from ffsr_plan.lattice.node_bounds_kernel import take_in
+
         layers = np.flatnonzero(~self.known[np.arange(len(path)), path])
         if not len(layers):
             return layers
         nodes = path[layers]
         exact = self._evaluate(layers, self._lattice.offsets[nodes])
-        bounds = exact[:, None] + self._lattice.distances[nodes]
-        at = self.bounds[layers]
-        self.bounds[layers] = np.where(self.known[layers], at, np.minimum(at, bounds))
-        self.bounds[layers, nodes], self.known[layers, nodes] = exact, True
+        take_in(layers, nodes, exact, self._distances, self.bounds, self.known)
         return layers
 
     def exact(self) -> Array:

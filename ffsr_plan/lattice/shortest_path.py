@@ -55,7 +55,7 @@ class LazyShortestPath:
         Returns:
             (m + 1,) nodes, or None if there is no path.
         """
-        from ffsr_plan.lattice.shortest_path_kernel import extend
+        from ffsr_plan.lattice.shortest_path_kernel import extend, trace
 
         costs, before, (m, n, _) = self._costs, self._before, self._status.shape
         layers = max(1, _EDGES_AT_ONCE // n**2)
@@ -66,7 +66,5 @@ class LazyShortestPath:
         if not np.isfinite(self.least_cost):
             return None
         path = np.empty(m + 1, dtype=np.int64)
-        path[m] = self._origin
-        for i in range(m, 0, -1):
-            path[i - 1] = before[i, path[i]]
+        trace(before, self._origin, path)
         return path

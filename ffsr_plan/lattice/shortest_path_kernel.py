@@ -48,6 +48,21 @@ def extend(
 
 
 @kernel
+def trace(before: IntArray, origin: int, path: IntArray) -> None:
+    """The shortest path to a node of the last layer.
+
+    Args:
+        before: (m + 1, n) the node that the shortest path comes from.
+        origin: the node.
+        path: (m + 1,) nodes, filled in.
+    """
+    last = len(path) - 1
+    path[last] = origin
+    for i in range(last, 0, -1):
+        path[i - 1] = before[i, path[i]]
+
+
+@kernel
 def promising(costs: Array, most: float) -> Flags:
     """The edges of paths, from first node to first node, that are cheaper than `most`.
 

@@ -5,12 +5,9 @@ The mathematics is in `kernels.travel`.
 
 from __future__ import annotations
 
-from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
-import coal
 import numpy as np
-import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array, IntArray, Records, records
 from ffsr_plan.core.rotations import IDENTITY
@@ -91,23 +88,21 @@ class TravelBound:
         from ffsr_plan.proof.kernels.travel import HULL_POINT
 
         self._bodies, given = robot.bodies, robot.primitives
-        corners = [hull_points(shape) for shape in robot.collision_model.geometryObjects]
-        self.shapes: Records = records(SHAPE, len(corners))
-        counts = np.array([len(each) for each in corners], dtype=np.int64)
+        self.shapes: Records = records(SHAPE, len(given.kinds))
         columns = {
             "kind": given.kinds,
             "extent": given.sizes,
             "link": given.links,
             "rotation": given.rotations,
             "position": given.positions,
-            "first": np.cumsum(counts) - counts,
-            "end": np.cumsum(counts),
+            "first": np.cumsum(given.corners) - given.corners,
+            "end": np.cumsum(given.corners),
         }
         for name, column in columns.items():
             self.shapes[name] = column
-        self.points: Records = records(HULL_POINT, int(counts.sum()))
-        self.points["link"] = np.repeat(given.links, counts)
-        self.points["place"] = np.concatenate([np.zeros((0, 3)), *corners])
+        self.points: Records = records(HULL_POINT, len(given.points))
+        self.points["link"] = np.repeat(given.links, given.corners)
+        self.points["place"] = given.points
 
     def in_world(
         self, values: Array, rates: Array, lengths: Array, base: BaseMotion, quats: Array
@@ -145,25 +140,3 @@ class TravelBound:
 
         still = BaseMotion(False, False, np.zeros((len(values), 3)), 0.0)
         return self.in_world(values, rates, lengths, still, np.tile(IDENTITY, (len(values), 1)))
-
-
-def hull_points(geometry: pin.GeometryObject) -> Array:
-    """Points whose convex hull, widened by a sphere's or capsule's radius, contains the shape.
-
-    Args:
-        geometry: a collision shape on its link.
-
-    Returns:
-        (N, 3) points in the frame of the link [m].
-    """
-    shape, placement = geometry.geometry, geometry.placement
-    if isinstance(shape, coal.Sphere):
-        local = np.zeros((1, 3))
-    elif isinstance(shape, coal.Capsule):
-        local = np.array([[0.0, 0.0, -shape.halfLength], [0.0, 0.0, shape.halfLength]])
-    else:  # boxes and hulls: the corners of the bounding box along their own axes
-        shape.computeLocalAABB()
-        box = np.array([shape.aabb_local.min_, shape.aabb_local.max_])
-        local = np.array(list(product(*box.T)))
-    points: Array = local @ placement.rotation.T + placement.translation
-    return points

@@ -7,6 +7,7 @@ box around it: the search then returns a lower bound, and Coal measures the dist
 
 from __future__ import annotations
 
+from itertools import product
 from typing import NamedTuple
 
 import coal
@@ -29,6 +30,8 @@ class Primitives(NamedTuple):
         links: (g,) the link of the shape, numbered as in `kinematics`.
         rotations: (g, 3, 3) shape axes to link axes.
         positions: (g, 3) origin of the shape in the link's frame [m].
+        corners: (g,) number of `hull_points` of each shape.
+        points: (P, 3) all of them, in the frames of the links [m].
     """
 
     kinds: NDArray[np.int64]
@@ -37,6 +40,8 @@ class Primitives(NamedTuple):
     links: IntArray
     rotations: Array
     positions: Array
+    corners: IntArray
+    points: Array
 
 
 def primitives(geometry: pin.GeometryModel) -> Primitives:
@@ -47,6 +52,7 @@ def primitives(geometry: pin.GeometryModel) -> Primitives:
     """
     shapes = list(geometry.geometryObjects)
     described = [_describe(shape.geometry) for shape in shapes]
+    corners = [hull_points(shape) for shape in shapes]
     return Primitives(
         frozen(np.array([kind for kind, _, _ in described], dtype=np.int64)),
         frozen(np.array([size for _, size, _ in described], dtype=np.float64).reshape(-1, 3)),
@@ -54,6 +60,8 @@ def primitives(geometry: pin.GeometryModel) -> Primitives:
         frozen(np.array([shape.parentJoint - 1 for shape in shapes], dtype=np.int64)),
         frozen(np.array([s.placement.rotation for s in shapes]).reshape(-1, 3, 3)),
         frozen(np.array([s.placement.translation for s in shapes]).reshape(-1, 3)),
+        frozen(np.array([len(each) for each in corners], dtype=np.int64)),
+        frozen(np.concatenate([np.zeros((0, 3)), *corners])),
     )
 
 
@@ -66,3 +74,25 @@ def _describe(solid: coal.CollisionGeometry) -> tuple[int, tuple[float, ...], bo
         return BOX, tuple(solid.halfSide), True
     points = np.array([solid.point(k) for k in range(solid.num_points)])
     return BOX, tuple(np.abs(points).max(axis=0)), False
+
+
+def hull_points(geometry: pin.GeometryObject) -> Array:
+    """Points whose convex hull, widened by a sphere's or capsule's radius, contains the shape.
+
+    Args:
+        geometry: a collision shape on its link.
+
+    Returns:
+        (N, 3) points in the frame of the link [m].
+    """
+    shape, placement = geometry.geometry, geometry.placement
+    if isinstance(shape, coal.Sphere):
+        local = np.zeros((1, 3))
+    elif isinstance(shape, coal.Capsule):
+        local = np.array([[0.0, 0.0, -shape.halfLength], [0.0, 0.0, shape.halfLength]])
+    else:  # boxes and hulls: the corners of the bounding box along their own axes
+        shape.computeLocalAABB()
+        box = np.array([shape.aabb_local.min_, shape.aabb_local.max_])
+        local = np.array(list(product(*box.T)))
+    points: Array = local @ placement.rotation.T + placement.translation
+    return points

@@ -10,9 +10,9 @@ import numpy as np
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.rotations import cross
-from ffsr_plan.proof.travel_bound import hull_points
 from ffsr_plan.robots.kinematics import Poses, Tree, Velocities, turned
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.shape_arrays import hull_points
 
 
 class ReferenceTravel(NamedTuple):
