@@ -14,7 +14,7 @@ from ffsr_plan.problem.free_objective import least_objective, stations_objective
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import Branches, History, Solution
 from ffsr_plan.time_limit.deadline import Deadline
-from ffsr_plan.tree_search.kernels.trees import Trees
+from ffsr_plan.tree_search.kernels.search_arrays import Trees
 from ffsr_plan.tree_search.path_improvement import ImprovedPath
 from ffsr_plan.tree_search.path_proof import PathProof, prove
 from ffsr_plan.tree_search.search_space import SearchSpace

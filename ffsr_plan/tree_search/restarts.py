@@ -1,4 +1,4 @@
-"""Searches by trees, one after another, with other random numbers and lengths of edges."""
+"""Searches by trees, one after another, with other random numbers, lengths of edges and samples."""
 
 from __future__ import annotations
 
@@ -10,14 +10,18 @@ import numpy as np
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.tree_search.kernels.flight import distance, fly
 from ffsr_plan.tree_search.kernels.random_numbers import random_state
-from ffsr_plan.tree_search.kernels.trees import FULL, Trees, grow, plant
+from ffsr_plan.tree_search.kernels.samples import Sampling
+from ffsr_plan.tree_search.kernels.search_arrays import JOINTS, Trees
+from ffsr_plan.tree_search.kernels.trees import FULL, grow, plant
 from ffsr_plan.tree_search.search_space import SearchSpace
+from ffsr_plan.tree_search.tree_settings import TreeSettings
 
 CHUNK = 500
 """Configurations checked between two looks at the clock: a few milliseconds."""
 _MOST_PAIRS = 200_000  # of nodes whose distances are computed for an error
 _FIRST_NODES = 20_000  # of each tree of a first try; longer ones have more
 _CHECKS_A_NODE = 4  # at least
+_DETOUR = 1.3  # length of paths that are looked for, as a multiple of one that is known
 _MOST_NODES, _MOST_CHECKS = 500_000, 10**10  # of a try, however many there were before
 
 
@@ -60,35 +64,30 @@ class Restarts:
     """
 
     def __init__(
-        self,
-        space: SearchSpace,
-        rng: np.random.Generator,
-        reaches: tuple[float, ...],
-        first_checks: int,
-        roots: int,
+        self, space: SearchSpace, rng: np.random.Generator, settings: TreeSettings
     ) -> None:
         """Prepare the searches.
 
         Args:
             space: the configuration space.
             rng: source of randomness.
-            reaches: longest edge of each try of a round; negative where the tree from the start
-                grows alone.
-            first_checks: configurations that a try of the first round checks at most.
-            roots: attitudes on arrival that are assumed at most.
+            settings: of the trees.
         """
-        self._space, self._random = space, random_state(rng)
-        self._reaches, self._first, self._roots = reaches, first_checks, roots
+        self._space, self._random, self._settings = space, random_state(rng), settings
+        self._boxes = (_box_about(space, settings.joint_range), space.arrays.box)
         self._left = 0  # checks that remain of the try at hand
         self.trees: Trees = self._planted()
         self.meetings = Meetings()
 
-    def find(self, checks: int, expired: Callable[[], bool] = bool) -> FoundPath | None:
+    def find(
+        self, checks: int, expired: Callable[[], bool] = bool, known: float = np.inf
+    ) -> FoundPath | None:
         """Search until a path is found or the work is done.
 
         Args:
             checks: configurations that may be checked.
             expired: asked every few milliseconds; whether to stop.
+            known: cost of the best path that is known [m].
 
         Returns:
             A path, or None.
@@ -98,10 +97,10 @@ class Restarts:
         while int(setup["checks"]) < end and not expired():
             if self._left <= 0:
                 self._begin()
-            reach = self._reaches[(self.meetings.tries - 1) % len(self._reaches)]
+            sampling, twin = self._sampling(known)
             now = int(setup["checks"])
             stop = min(now + min(self._left, CHUNK), end)
-            found = grow(space.arrays, self.trees, self._random, abs(reach), reach > 0.0, stop)
+            found = grow(space.arrays, self.trees, self._random, sampling, twin, stop)
             self._left -= int(setup["checks"]) - now
             if found == FULL:
                 self._left = 0
@@ -127,11 +126,21 @@ class Restarts:
         _, i, j = best
         return first[i], self.trees.attitudes[0, i], second[j]
 
+    def _sampling(self, known: float) -> tuple[Sampling, bool]:
+        """Samples of the try at hand, and whether both trees grow.
+
+        Of two rounds of tries, each length of edges has samples from either box in one.
+        """
+        reaches, number = self._settings.reaches, self.meetings.tries - 1
+        turn, place = divmod(number, len(reaches))
+        box = self._boxes[(turn + place) % 2]
+        return Sampling(box, abs(reaches[place]), _DETOUR * known), reaches[place] > 0.0
+
     def _begin(self) -> None:
         """A new try."""
         self._tally()
         tries = self.meetings.tries
-        self._left = self._first * 2 ** (tries // len(self._reaches))
+        self._left = self._settings.first_checks * 2 ** (tries // len(self._settings.reaches))
         self._left = min(self._left, _MOST_CHECKS)
         self.trees = self._planted()
         self.meetings = self.meetings._replace(tries=tries + 1)
@@ -149,7 +158,7 @@ class Restarts:
         """Trees that consist of their roots."""
         space, start = self._space, self._space.start
         capacity = min(max(_FIRST_NODES, self._left // _CHECKS_A_NODE), _MOST_NODES)
-        roots = max(self._roots + len(space.problem.alternatives), len(space.goals))
+        roots = max(self._settings.roots + len(space.problem.alternatives), len(space.goals))
         trees = Trees(
             np.zeros((2, capacity, len(start))),
             np.zeros((2, capacity, 4)),
@@ -174,6 +183,16 @@ class Restarts:
         return FoundPath(
             self.trees.states[0, nodes[::-1]].copy(), self.trees.attitudes[0, nodes[::-1]].copy()
         )
+
+
+def _box_about(space: SearchSpace, joint_range: float | None) -> Array:
+    """(2, D) the box of the space, joints no farther from those of start and goals than a range."""
+    box = space.arrays.box.copy()
+    if joint_range is not None:
+        ends = np.vstack([space.start, space.goals])[:, JOINTS:]
+        box[0, JOINTS:] = np.maximum(box[0, JOINTS:], ends.min(axis=0) - joint_range)
+        box[1, JOINTS:] = np.minimum(box[1, JOINTS:], ends.max(axis=0) + joint_range)
+    return box
 
 
 def far_apart(space: SearchSpace, first: Array, second: Array) -> float:

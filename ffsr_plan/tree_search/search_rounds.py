@@ -60,9 +60,7 @@ class SearchRounds:
         self.space = SearchSpace(check_ends(problem), settings.margin)
         self._deadline, self._ways = monitor.deadline or Deadline(), settings.ways
         searching, self._random = rng.spawn(1)[0], random_state(rng)
-        self._restarts = Restarts(
-            self.space, searching, settings.reaches, settings.first_checks, settings.roots
-        )
+        self._restarts = Restarts(self.space, searching, settings)
         self._paths: list[ImprovedPath] = []
         self._missed: float | None = None  # [rad], by paths to the goal at another attitude
         self.proven = ProvenPaths(self.space, self._deadline)
@@ -150,7 +148,8 @@ class SearchRounds:
         least, part = np.inf, self._checks() + int(_SEARCHING * (end - self._checks()))
         while self._checks() < (part if self._paths else end) and not self._monitor.expired():
             limit = part if self._paths else end
-            found = self._restarts.find(limit - self._checks(), self._monitor.expired)
+            known = min((path.cost for path in self._paths), default=np.inf)
+            found = self._restarts.find(limit - self._checks(), self._monitor.expired, known)
             if found is None:
                 continue
             path = self._path(*found)

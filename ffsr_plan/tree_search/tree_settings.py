@@ -22,6 +22,8 @@ class TreeSettings:
             for where `plan` has a time limit.
         reaches: longest edge towards a sample in each search of a round, in metres, where a radian
             counts as 0.6 m; negative where the tree from the start grows alone.
+        joint_range: in every other search, how far samples of a joint may lie outside the values
+            between start and goal [rad or m]; None for the joint's limits in all of them.
         first_checks: configurations checked at most by each search of the first round; each further
             round has twice as many.
         roots: attitudes on arrival that the tree from the goal assumes at most.
@@ -32,6 +34,7 @@ class TreeSettings:
 
     checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] | None = None
     reaches: tuple[_Reach, ...] = (1.6, 4.0)
+    joint_range: Annotated[float, Number(above=0.0, at_most=1e3)] | None = 2.0
     first_checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] = 40_000
     roots: Annotated[int, WholeNumber(at_least=1, at_most=1000)] = 12
     ways: Annotated[int, WholeNumber(at_least=1, at_most=100)] = 3

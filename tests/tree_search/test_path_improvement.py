@@ -13,12 +13,15 @@ from ffsr_plan.tree_search.kernels.random_numbers import random_state
 from ffsr_plan.tree_search.path_improvement import ImprovedPath
 from ffsr_plan.tree_search.restarts import Restarts
 from ffsr_plan.tree_search.search_space import SearchSpace
+from ffsr_plan.tree_search.tree_settings import TreeSettings
 from tests.helpers.free_scenes import beside_a_box, gap, scattered
+
+SETTINGS = TreeSettings(reaches=(1.6,), first_checks=100_000, joint_range=None)
 
 
 def found(problem, seed=0):
     space = SearchSpace(problem, 1e-3)
-    path = Restarts(space, np.random.default_rng(seed), (1.6,), 100_000, 12).find(400_000)
+    path = Restarts(space, np.random.default_rng(seed), SETTINGS).find(400_000)
     return space, ImprovedPath(space, *path), random_state(np.random.default_rng(seed))
 
 

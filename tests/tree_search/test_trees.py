@@ -8,12 +8,13 @@ from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.tree_search.kernels.flight import fly
 from ffsr_plan.tree_search.restarts import Restarts
 from ffsr_plan.tree_search.search_space import SearchSpace
+from ffsr_plan.tree_search.tree_settings import TreeSettings
 from tests.helpers.free_scenes import beside_a_box, gap, scattered
 
 
 def searched(problem, reaches=(1.6,), checks=60_000, seed=0):
     space = SearchSpace(problem, 1e-3)
-    restarts = Restarts(space, np.random.default_rng(seed), reaches, 40_000, 12)
+    restarts = Restarts(space, np.random.default_rng(seed), TreeSettings(reaches=reaches))
     return space, restarts, restarts.find(checks)
 
 
@@ -82,7 +83,8 @@ def test_no_more_is_checked_than_allowed(robot):
 
 def test_tries_double_in_length_after_each_round(robot):
     space = SearchSpace(gap(robot, 0, width=0.3), 1e-3)
-    restarts = Restarts(space, np.random.default_rng(0), (1.0, -1.0), 1000, 4)
+    settings = TreeSettings(reaches=(1.0, -1.0), first_checks=1000, roots=4)
+    restarts = Restarts(space, np.random.default_rng(0), settings)
     begun = []
     for _ in range(60):
         restarts.find(250)

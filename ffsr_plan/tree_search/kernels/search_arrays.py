@@ -108,3 +108,21 @@ class SearchArrays(NamedTuple):
     bounds: Array
     frame: Array
     still: Array
+
+
+class Trees(NamedTuple):
+    """Tree 0 from the start and tree 1 from the goals.
+
+    Attributes:
+        states: (2, N, D) nodes.
+        attitudes: (2, N, 4) of the base.
+        parents: (2, N) of each node, -1 for a root.
+        roots: (R,) nodes of tree 1 that are roots.
+        counts: (5,) nodes of both trees, roots of tree 1, meetings, and meetings that failed.
+    """
+
+    states: Array
+    attitudes: Array
+    parents: IntArray
+    roots: IntArray
+    counts: IntArray

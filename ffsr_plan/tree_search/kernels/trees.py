@@ -7,59 +7,39 @@ the branch of tree 1 is flown from the node of tree 0 at the true attitude: that
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.quaternions import angle_of, turned_back
 from ffsr_plan.tree_search.kernels.flight import distance, fly
-from ffsr_plan.tree_search.kernels.random_numbers import RandomState, below, normal, uniform
-from ffsr_plan.tree_search.kernels.search_arrays import JOINTS, SearchArrays
+from ffsr_plan.tree_search.kernels.random_numbers import RandomState, below, uniform
+from ffsr_plan.tree_search.kernels.samples import Sampling, draw
+from ffsr_plan.tree_search.kernels.search_arrays import SearchArrays, Trees
 
 GROWING, FULL = -1, -2
 """What `grow` returns without a path: it may go on, or there is no memory for more nodes."""
-_BASE_ONLY, _ARMS_ONLY, _BETWEEN = 0.25, 0.40, 0.60  # cumulated shares of the kinds of samples
-_SPREAD = 0.3  # [rad or m] of samples about the way from start to goal
 _SHORTEST = 0.02  # length of an edge that is worth a node
 _SHORTEST_JOIN = 0.05  # of one that did not reach the other tree
 _SAME = 1e-6  # distance of two states that are one
+_GOAL_SHARE = 0.1  # of the nodes of a tree that grows alone
 _SAME_ATTITUDE = 0.02  # [rad] between roots of one goal
-_GOAL_SHARE = 0.1  # of the samples of a tree that grows alone
 _ROOM = 4  # nodes that one round may add, besides a branch
 _NODES_A_CHECK = 400  # whose distances take as long as a check of a configuration
 
 
-class Trees(NamedTuple):
-    """Tree 0 from the start and tree 1 from the goals.
-
-    Attributes:
-        states: (2, N, D) nodes.
-        attitudes: (2, N, 4) of the base.
-        parents: (2, N) of each node, -1 for a root.
-        roots: (R,) nodes of tree 1 that are roots.
-        counts: (5,) nodes of both trees, roots of tree 1, meetings, and meetings that failed.
-    """
-
-    states: Array
-    attitudes: Array
-    parents: IntArray
-    roots: IntArray
-    counts: IntArray
-
-
 @kernel
 def grow(
-    space: SearchArrays, trees: Trees, random: RandomState, reach: float, twin: bool, checks: int
-) -> int:
+    space: SearchArrays, trees: Trees, random: RandomState, sampling: Sampling, twin: bool,
+    checks: int,
+) -> int:  # fmt: skip
     """Grow until a path is found or so many configurations have been checked.
 
     Args:
         space: robot, scene and settings.
         trees: changed.
         random: (1,) state of the random numbers.
-        reach: greatest length of an edge from a node towards a sample.
+        sampling: where samples lie, and how far an edge goes towards them.
         twin: whether tree 1 grows as well; otherwise nodes of tree 0 are flown to a goal.
         checks: value of `setup.checks` at which to stop.
 
@@ -70,13 +50,13 @@ def grow(
     memory = np.empty(2 * dimensions + 8)
     sample, target = memory[:dimensions], memory[dimensions : 2 * dimensions]
     arrival = memory[2 * dimensions : 2 * dimensions + 4]
-    counts, side = trees.counts, 1
+    counts, side, reach = trees.counts, 1, sampling.reach
     while space.setup[0].checks < checks:
         if max(counts[0], counts[1]) + _ROOM >= trees.states.shape[1]:
             return FULL
         side = 1 - side if twin else 0
         space.setup[0].checks += 1 + (counts[0] + counts[1]) // _NODES_A_CHECK
-        node = draw(space, trees, random, side, twin, sample)
+        node = draw(space, trees, random, sampling, side, twin, sample)
         node = extend(space, trees, side, node, sample, reach, target, arrival)
         if node < 0:
             continue
@@ -87,64 +67,6 @@ def grow(
         if found >= 0:
             return found
     return GROWING
-
-
-@kernel
-def draw(
-    space: SearchArrays, trees: Trees, random: RandomState, side: int, twin: bool, sample: Array
-) -> int:
-    """Draw a state to grow towards, and choose the node to grow from.
-
-    Args:
-        space: gives the box.
-        trees: the trees.
-        random: (1,) state of the random numbers.
-        side: the tree that grows.
-        twin: whether both grow; a tree that grows alone is drawn to the goals.
-        sample: (D,) filled in.
-
-    Returns:
-        The node.
-    """
-    states, count = trees.states[side], trees.counts[side]
-    for k in range(len(sample)):
-        low, high = space.box[0, k], space.box[1, k]
-        sample[k] = low + (high - low) * uniform(random)
-    kind = uniform(random)
-    if not twin and uniform(random) < _GOAL_SHARE:
-        sample[:] = trees.states[1, trees.roots[below(random, trees.counts[2])]]
-    elif kind < _BASE_ONLY:
-        node = below(random, count)
-        if uniform(random) < 0.5:
-            node = nearest(space.weights, states, count, sample, JOINTS)
-        sample[JOINTS:] = states[node, JOINTS:]
-        return node
-    elif kind < _ARMS_ONLY:
-        node = below(random, count)
-        sample[:JOINTS] = states[node, :JOINTS]
-    elif kind < _BETWEEN:
-        share, goal = uniform(random), trees.roots[below(random, trees.counts[2])]
-        for k in range(JOINTS, len(sample)):
-            begin, end = trees.states[0, 0, k], trees.states[1, goal, k]
-            value = begin + share * (end - begin) + _SPREAD * normal(random)
-            sample[k] = min(max(value, space.box[0, k]), space.box[1, k])
-    return nearest(space.weights, states, count, sample, len(sample))
-
-
-@kernel
-def nearest(weights: Array, states: Array, count: int, sample: Array, columns: int) -> int:
-    """The node nearest to a state by its first `columns` coordinates."""
-    best, found = np.inf, 0
-    for i in range(count):
-        squared = 0.0
-        for k in range(columns):
-            step = (states[i, k] - sample[k]) * weights[0, k]
-            squared += step * step
-            if squared >= best:
-                break
-        if squared < best:
-            best, found = squared, i
-    return found
 
 
 @kernel
