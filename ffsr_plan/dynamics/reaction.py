@@ -8,6 +8,7 @@ has a bound; docs/proof.md, section 9, derives it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -58,17 +59,30 @@ class Reaction:
             IntegrationError: a segment needs more than 4096 substeps.
         """
         from ffsr_plan.dynamics.kernels import reaction as kernels
-        from ffsr_plan.dynamics.kernels.rotation_series import TERMS, Partial
+        from ffsr_plan.dynamics.kernels.rotation_series import TERMS
 
         begin, steps = _own(begin), _own(steps)  # kernels are compiled for writable arrays
         memory = kernels.memory_for(robot.nd + 1)
-        substeps = _cut(robot, begin, steps, tolerance, memory)
+
+        def cut(segment: int, count: int, substeps: Records) -> tuple[int, int]:
+            return kernels.cut(
+                robot.bodies, begin, steps, tolerance, memory, segment, count, substeps
+            )
+
+        substeps = cut_all(cut, np.abs(steps).max(axis=1, initial=0.0))
         series = np.empty((len(substeps) if inside else 0, TERMS, 4))
-        kernels.expand(robot.bodies, begin, steps, _points(), memory, substeps, series)
-        self.increments: Array = np.tile(rotations.IDENTITY, (len(steps), 1))
-        self.errors: Array = np.zeros(len(steps))
-        kernels.chain(substeps, memory, self.increments, self.errors)
-        first = np.searchsorted(substeps["segment"], np.arange(len(steps) + 1))
+        kernels.expand(robot.bodies, begin, steps, interpolation_points(), memory, substeps, series)
+        self._chain(len(steps), substeps, series, memory)
+
+    def _chain(self, segments: int, substeps: Records, series: Array, memory: Memory) -> None:
+        """Chain substeps that have been integrated to rotations over whole segments."""
+        from ffsr_plan.dynamics.kernels.reaction import chain
+        from ffsr_plan.dynamics.kernels.rotation_series import Partial
+
+        self.increments: Array = np.tile(rotations.IDENTITY, (segments, 1))
+        self.errors: Array = np.zeros(segments)
+        chain(substeps, memory, self.increments, self.errors)
+        first = np.searchsorted(substeps["segment"], np.arange(segments + 1))
         self.partial = Partial(first, substeps, series)
 
     @classmethod
@@ -119,19 +133,23 @@ def _own(array: Array) -> Array:
     return np.array(array, dtype=np.float64, order="C")
 
 
-def _cut(
-    robot: SpaceRobot, begin: Array, steps: Array, tolerance: float, memory: Memory
-) -> Records:
-    """Substeps of all segments, cut but not integrated."""
-    from ffsr_plan.dynamics.kernels.reaction import cut
+def cut_all(cut: Callable[[int, int, Records], tuple[int, int]], changes: Array) -> Records:
+    """Substeps of all segments, cut but not integrated.
+
+    Args:
+        cut: cuts from a segment on, given the number of substeps before it and the room for them;
+            see `kernels.reaction.cut`.
+        changes: (m,) largest change of a joint value over each segment [rad or m].
+
+    Raises:
+        IntegrationError: a segment needs more than 4096 substeps.
+    """
     from ffsr_plan.dynamics.kernels.rotation_series import SUBSTEP
 
-    substeps, segment, count = records(SUBSTEP, 2 * len(steps) + 64), 0, 0
+    substeps, segment, count = records(SUBSTEP, 2 * len(changes) + 64), 0, 0
     while True:
-        segment, count = cut(
-            robot.bodies, begin, steps, tolerance, memory, segment, count, substeps
-        )
-        if segment == len(steps):
+        segment, count = cut(segment, count, substeps)
+        if segment == len(changes):
             break
         more = records(SUBSTEP, 2 * len(substeps))
         more[: len(substeps)] = substeps
@@ -139,15 +157,15 @@ def _cut(
     substeps = substeps[:count].copy()
     given_up = substeps["segment"][substeps["length"] == 0.0]
     if len(given_up):
-        largest = float(np.max(np.abs(steps[given_up[0]])))
         raise IntegrationError(
-            f"the base reaction does not converge (joint step {largest:g} in one edge)"
+            f"the base reaction does not converge (joint step {changes[given_up[0]]:g} in one edge)"
         )
     return substeps
 
 
 @cache
-def _points() -> Records:
+def interpolation_points() -> Records:
+    """(13,) the points at which the angular velocity is evaluated over a substep."""
     from ffsr_plan.dynamics.kernels.reaction import gauss_points
 
     return gauss_points()

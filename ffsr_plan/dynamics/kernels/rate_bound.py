@@ -59,33 +59,56 @@ def excursions_of_links(
         links: (n,) `LINK_STATE` at the present values.
         moved: (n,) `EXCURSION`, filled in.
     """
-    for j in range(len(bodies)):
-        out, turn, twist, lever = moved[j], 0.0, 0.0, norm_of(bodies[j].lever)
-        if j > 0:
-            above, rate, sliding = moved[bodies[j].parent], 0.0, abs(rates[j - 1])
-            if not bodies[j].prismatic:
-                rate, sliding = sliding, rate
-            begin, end = links[bodies[j].parent].origin, links[j].origin
-            x, y, z = end[0] - begin[0], end[1] - begin[1], end[2] - begin[2]
-            length, growth = math.sqrt(x * x + y * y + z * z), math.exp(above.twist)
-            turn, twist = above.turn + rate * real, above.twist + rate * imaginary
-            reach = length + sliding * real
-            out.real_shift[0] = above.real_shift[0] + _chord(above.turn) * length + sliding * real
-            out.forth[0] = above.forth[0] + (growth - 1.0) * reach + growth * sliding * imaginary
-            out.back[0] = (
-                above.back[0] + (1.0 / growth - 1.0) * reach - sliding * imaginary / growth
-            )
-            out.speeds[0] = above.speeds[0] + growth * rate
-            out.speeds[1] = (
-                above.speeds[1]
-                + above.speeds[0] * growth * (reach + sliding * imaginary)
-                + growth * sliding
-            )
-        out.turn, out.twist, growth = turn, twist, math.exp(twist)
-        out.real_shift[1] = out.real_shift[0] + _chord(turn) * lever
-        out.forth[1] = out.forth[0] + (growth - 1.0) * lever
-        out.back[1] = out.back[0] + (1.0 / growth - 1.0) * lever
-        out.speeds[2] = out.speeds[1] + out.speeds[0] * growth * lever
+    excursion_of_link(bodies, 0, 0.0, real, imaginary, links, moved)
+    for j in range(1, len(bodies)):
+        excursion_of_link(bodies, j, abs(rates[j - 1]), real, imaginary, links, moved)
+
+
+@kernel
+def excursion_of_link(
+    bodies: Records,
+    j: int,
+    speed: float,
+    real: float,
+    imaginary: float,
+    links: Records,
+    moved: Records,
+) -> None:
+    """How far a link can move, and how fast; its parent's excursion is known.
+
+    Args:
+        bodies: (n,) the links, `BODY`.
+        j: the link.
+        speed: bound on the rate of its joint.
+        real: largest real excursion of its joint, divided by the speed.
+        imaginary: largest imaginary excursion, divided by the speed.
+        links: (n,) `LINK_STATE` at the present values.
+        moved: (n,) `EXCURSION`, filled in for the link.
+    """
+    out, turn, twist, lever = moved[j], 0.0, 0.0, norm_of(bodies[j].lever)
+    if j > 0:
+        above, rate, sliding = moved[bodies[j].parent], 0.0, speed
+        if not bodies[j].prismatic:
+            rate, sliding = sliding, rate
+        begin, end = links[bodies[j].parent].origin, links[j].origin
+        x, y, z = end[0] - begin[0], end[1] - begin[1], end[2] - begin[2]
+        length, growth = math.sqrt(x * x + y * y + z * z), math.exp(above.twist)
+        turn, twist = above.turn + rate * real, above.twist + rate * imaginary
+        reach = length + sliding * real
+        out.real_shift[0] = above.real_shift[0] + _chord(above.turn) * length + sliding * real
+        out.forth[0] = above.forth[0] + (growth - 1.0) * reach + growth * sliding * imaginary
+        out.back[0] = above.back[0] + (1.0 / growth - 1.0) * reach - sliding * imaginary / growth
+        out.speeds[0] = above.speeds[0] + growth * rate
+        out.speeds[1] = (
+            above.speeds[1]
+            + above.speeds[0] * growth * (reach + sliding * imaginary)
+            + growth * sliding
+        )
+    out.turn, out.twist, growth = turn, twist, math.exp(twist)
+    out.real_shift[1] = out.real_shift[0] + _chord(turn) * lever
+    out.forth[1] = out.forth[0] + (growth - 1.0) * lever
+    out.back[1] = out.back[0] + (1.0 / growth - 1.0) * lever
+    out.speeds[2] = out.speeds[1] + out.speeds[0] * growth * lever
 
 
 @kernel

@@ -9,7 +9,7 @@ section 9, has the mathematics.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -42,8 +42,8 @@ MOST_SUBSTEPS = 4096
 """Substeps of one segment at most."""
 INTERPOLATION = 7.2
 """1 plus the Lebesgue constant of 13 Gauss points, which is 6.10."""
-_LARGEST_TWIST, _NEXT_TWIST = 2.0, 0.5  # imaginary joint rotations [rad] to try for the bound
-_LEAST_RHO = 2.5  # below, the bound is not small
+LARGEST_TWIST, NEXT_TWIST = 2.0, 0.5  # imaginary joint rotations [rad] to try for the bound
+LEAST_RHO = 2.5  # below, the bound is not small
 _ABSOLUTE = 2.0  # integral of the absolute value of a Lagrange polynomial, relative to its weight
 _ROUNDING = 32.0 * np.finfo(np.float64).eps  # [rad] of the quaternions of one substep
 
@@ -141,11 +141,11 @@ def _approximation_error(
         largest = max(largest, turn)
     if largest == 0.0:
         return 0.0
-    error, twist = np.inf, _LARGEST_TWIST
+    error, twist = np.inf, LARGEST_TWIST
     while True:
         imaginary = twist / largest  # of the ellipse with foci -1 and 1 whose axes sum to rho
         rho = imaginary + math.sqrt(imaginary * imaginary + 1.0)
-        if rho < _LEAST_RHO:
+        if rho < LEAST_RHO:
             return error
         real = half * 0.5 * (rho + 1.0 / rho)
         excursions_of_links(bodies, rates, real, half * imaginary, links, moved)
@@ -153,7 +153,7 @@ def _approximation_error(
         found = 2.0 * INTERPOLATION * size * rho ** (1 - POINTS) / (rho - 1.0)
         if found <= tolerance or found > error:
             return min(found, error)
-        error, twist = found, twist * _NEXT_TWIST
+        error, twist = found, twist * NEXT_TWIST
 
 
 @kernel
@@ -215,6 +215,54 @@ def cut(
 
 
 @kernel
+def rate_at_point(bodies: Records, values: Array, rates: Array, n: int, memory: Memory) -> float:
+    """Angular velocity of the base at the nth point of a substep, and its rounding error [rad].
+
+    Args:
+        bodies: the links.
+        values: (nd,) joint values there [rad or m].
+        rates: (nd,) their rates.
+        n: the point.
+        memory: the nth rate of its expansion is filled in.
+    """
+    links, robot, own = memory.links, memory.robot, memory.expansion[0]
+    move_links(bodies, values, rates, links)
+    weigh_links(bodies, links, robot)
+    least = base_rate(robot)
+    for a in range(3):
+        own.rates[n, a] = robot[0].rate[a]
+    return rate_rounding(bodies, links, robot, least)
+
+
+@kernel
+def integrate(
+    points: Records,
+    half: float,
+    rounding: float,
+    own: Any,  # noqa: ANN401 - one record of EXPANSION
+    substep: Any,  # noqa: ANN401 - one record of SUBSTEP
+) -> None:
+    """The rotation over a substep from the angular velocities at its points.
+
+    Args:
+        points: (13,) of `gauss_points`.
+        half: half the length of the substep.
+        rounding: integral of the rates' rounding errors over local time.
+        own: with the rates; the series is filled in.
+        substep: turn and back are filled in, the error is added to.
+    """
+    for i in range(POINTS):
+        for a in range(3):
+            power = 0.0
+            for n in range(POINTS):
+                power += 0.5 * half * points[i].monomials[n] * own.rates[n, a]
+            own.powers[i, a] = power
+    remainder = rotation_series(own.powers, own.terms, own.sizes)
+    substep.error += _ABSOLUTE * half * rounding + 4.0 * remainder + _ROUNDING
+    end_to_end(own.terms, substep.turn, substep.back, own.quat)
+
+
+@kernel
 def expand(
     bodies: Records,
     begin: Array,
@@ -235,7 +283,7 @@ def expand(
         substeps: (S,) of the segments; turns and backs are filled in, errors added to.
         series: (S, TERMS, 4) the series, filled in; (0, TERMS, 4) to drop it.
     """
-    values, links, robot, own = memory.values, memory.links, memory.robot, memory.expansion[0]
+    values, own = memory.values, memory.expansion[0]
     for s in range(len(substeps)):
         substep, rounding = substeps[s], 0.0
         k, half = substep.segment, 0.5 * substep.length
@@ -243,21 +291,8 @@ def expand(
             time = substep.begin + half * (1.0 + points[n].time)
             for j in range(len(values)):
                 values[j] = begin[k, j] + time * steps[k, j]
-            move_links(bodies, values, steps[k], links)
-            weigh_links(bodies, links, robot)
-            least = base_rate(robot)
-            rounding += points[n].weight * rate_rounding(bodies, links, robot, least)
-            for a in range(3):
-                own.rates[n, a] = robot[0].rate[a]
-        for i in range(POINTS):
-            for a in range(3):
-                power = 0.0
-                for n in range(POINTS):
-                    power += 0.5 * half * points[i].monomials[n] * own.rates[n, a]
-                own.powers[i, a] = power
-        remainder = rotation_series(own.powers, own.terms, own.sizes)
-        substep.error += _ABSOLUTE * half * rounding + 4.0 * remainder + _ROUNDING
-        end_to_end(own.terms, substep.turn, substep.back, own.quat)
+            rounding += points[n].weight * rate_at_point(bodies, values, steps[k], n, memory)
+        integrate(points, half, rounding, own, substep)
         if len(series) > 0:
             for i in range(TERMS):
                 for a in range(4):

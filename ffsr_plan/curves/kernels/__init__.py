@@ -1,0 +1,1 @@
+"""Compiled evaluation of curves, and of the base reaction along them."""

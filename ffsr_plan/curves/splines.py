@@ -1,0 +1,66 @@
+"""Uniform cubic B-splines in Bernstein form.
+
+Piece i belongs to edge i of the control polygon. A phantom control point beyond each end is the
+reflection of the second one at the first, so that the curve begins and ends at the polygon's ends,
+without curvature there. Control points in equal steps on a line give that line, run steadily.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import solveh_banded
+
+from ffsr_plan.core.arrays import Array, IntArray
+
+
+def bernstein_pieces(control: Array) -> Array:
+    """Bernstein coefficients of the B-spline's pieces.
+
+    Args:
+        control: (m + 1, k) control points.
+
+    Returns:
+        (m, 4, k) coefficients; the last of a piece is the first of the next, bit for bit.
+    """
+    knots = control.copy()
+    knots[1:-1] = (control[:-2] + 4.0 * control[1:-1] + control[2:]) / 6.0
+    begin, end = control[:-1], control[1:]
+    inner = (2.0 * begin + end) / 3.0, (begin + 2.0 * end) / 3.0
+    return np.stack([knots[:-1], *inner, knots[1:]], axis=1)
+
+
+def derivative(coefficients: Array) -> Array:
+    """Bernstein coefficients (m, d, k) of the derivative of pieces (m, d + 1, k) of degree d."""
+    degree = coefficients.shape[1] - 1
+    steps: Array = degree * np.diff(coefficients, axis=1)
+    return steps
+
+
+def evaluate(coefficients: Array, piece: IntArray, time: Array) -> Array:
+    """Values of pieces, by de Casteljau's scheme.
+
+    Args:
+        coefficients: (m, d + 1, k) in Bernstein form.
+        piece: (N,) pieces.
+        time: (N,) times on them, in [0, 1].
+
+    Returns:
+        (N, k) values.
+    """
+    left, t = coefficients[piece], time[:, None, None]
+    while left.shape[1] > 1:
+        left = (1.0 - t) * left[:, :-1] + t * left[:, 1:]
+    values: Array = left[:, 0]
+    return values
+
+
+def control_points_through(nodes: Array) -> Array:
+    """Control points (m + 1, k) of the B-spline whose knots are the given nodes (m + 1, k)."""
+    control = nodes.copy()
+    inner = 6.0 * nodes[1:-1]
+    if len(inner):
+        inner[0] -= nodes[0]
+        inner[-1] -= nodes[-1]
+        bands = np.array([np.ones(len(inner)), np.full(len(inner), 4.0)])
+        control[1:-1] = solveh_banded(bands, inner)
+    return control
