@@ -1,1 +1,1 @@
-"""Smooth curves through configuration space: twice continuously differentiable, base reaction included."""
+"""Smooth curves through configuration space, base reaction included."""

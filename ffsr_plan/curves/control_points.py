@@ -19,8 +19,8 @@ class ControlPoints(NamedTuple):
     Attributes:
         positions: (m + 1, 3) base origin, or where it floats the centre of mass, world axes [m].
         joint_values: (m + 1, nd) [rad or m].
-        shares: (m + 1,) share of the rotation by wheels from start to goal, or of the joints' way
-            where it is straight and the base reacts; zeros elsewhere.
+        shares: (m + 1,) share of the rotation by wheels from start to goal; where the base reacts,
+            of the polygon's parameter, which is that of the joints' way if it is straight.
     """
 
     positions: Array
@@ -38,7 +38,7 @@ class ControlPoints(NamedTuple):
         return ControlPoints(table[:, :3], table[:, 3:-1], table[:, -1])
 
     def repeated(self, counts: IntArray) -> ControlPoints:
-        """Each control point (m + 1,) so many times; the curve rests at one that is there thrice."""
+        """Each point (m + 1,) so many times; the curve rests at one that is there thrice."""
         return ControlPoints(*(np.repeat(each, counts, axis=0) for each in self))
 
 
@@ -60,11 +60,9 @@ def control_points_on(motion: Motion, parameters: Array) -> ControlPoints:
         positions = np.tile(start, (len(parameters), 1))
     else:
         positions = _between(motion.positions, edge, time[:, None])
-    shares = np.zeros(len(parameters))
-    if motion.mode.has_wheels and motion.turn_shares is not None:
+    shares = parameters / motion.edges
+    if motion.turn_shares is not None:
         shares = _between(motion.turn_shares, edge, time)
-    elif motion.mode.has_wheels or motion.joints_are_straight:
-        shares = parameters / motion.edges
     return ControlPoints(positions, motion.joints_at(edge, time), shares)
 
 

@@ -73,6 +73,18 @@ class CurvedMotion:
         """Bound on the error of any attitude [rad]."""
         return 0.0 if self.reaction is None else float(self.reaction.errors.sum())
 
+    def base_steps(self) -> Array:
+        """(m, 3) zeros: what moves the base along a piece is part of its curve."""
+        return np.zeros((self.edges, 3))
+
+    @cached_property
+    def pieces_in_base(self) -> Pieces:
+        """The curve as seen from the base: joints alone."""
+        values, rates, bends = (each.copy() for each in self.pieces[:3])
+        for each in (values, rates, bends):
+            each[:, :, :3] = 0.0
+        return Pieces(values, rates, bends, np.zeros(3))
+
     def configurations(self) -> Array:
         """(m + 1, nq) at the ends of the pieces."""
         last = np.append(np.arange(self.edges), self.edges - 1)

@@ -56,7 +56,7 @@ def corrected(
         share = 1.0
         while share >= _LEAST_STEP:
             deadline.check()
-            inner = _within_limits(robot, path[1:-1], directions[1:-1], slope, share * missed, free)
+            inner = within_limits(robot, path[1:-1], directions[1:-1], slope, share * missed, free)
             if inner is None:
                 return None
             trial = np.vstack([path[:1], inner, path[-1:]])
@@ -79,20 +79,32 @@ def _reaction_and_error(
     return reaction, rotations.log(rotations.multiply(rotations.inverse(reached), goal))
 
 
-def _within_limits(
+def within_limits(
     robot: SpaceRobot, corners: Array, directions: Array, slope: Array, missed: Array, free: Flags
 ) -> Array | None:
-    """The corners (m - 1, nd) after the least displacement that keeps every joint's limits.
+    """The corners after the least displacement that keeps every joint's limits.
 
     A corner that would exceed a limit along an axis is kept at its place along that axis; the other
     corners take over its part.
+
+    Args:
+        robot: the robot.
+        corners: (m - 1, nd) inner corners of a path [rad or m].
+        directions: (m - 1, axes, nd) along which each may be displaced.
+        slope: (3, (m - 1) axes) of `attitude_slopes`.
+        missed: (3,) rotation that is missing at the end, in its own axes [rad].
+        free: (m - 1, axes) whether they may be.
+
+    Returns:
+        (m - 1, nd), or None where nothing may be displaced.
     """
     free = free.copy()
     while free.any():
         change = np.linalg.lstsq(slope * free.ravel(), missed, rcond=None)[0].reshape(free.shape)
         moves = change[..., None] * directions
         moved = corners + np.sum(moves, axis=1)
-        above, below = moved > robot.upper, moved < robot.lower
+        above = moved > np.maximum(robot.upper, corners)
+        below = moved < np.minimum(robot.lower, corners)
         if not np.any(above | below):
             return np.asarray(moved)
         blocked = (above[:, None] & (moves > 0.0)) | (below[:, None] & (moves < 0.0))

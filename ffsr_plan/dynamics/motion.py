@@ -119,6 +119,11 @@ class Motion:
             self.joint_values[[0, -1]] if self.joints_are_straight else self.joint_values,
         )
 
+    @property
+    def attitude_error(self) -> float:
+        """Bound on the error of any attitude [rad]."""
+        return float(self.reaction.errors.sum()) if self.mode.attitude_reacts else 0.0
+
     @cached_property
     def _turned(self) -> Array:
         """(m + 1, 4) attitudes at the corners of a joint path that is not straight."""

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ffsr_plan.core.rotations import IDENTITY, rotate
+from ffsr_plan.curves.curved_motion import CurvedMotion
+from ffsr_plan.curves.kernels.pieces import Pieces
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.reaction import Reaction
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from ffsr_plan.proof.kernels.course import Course
 
 
-def course_of(motion: Motion, scene: Scene, travel: EdgeTravel) -> Course:
+def course_of(motion: Motion | CurvedMotion, scene: Scene, travel: EdgeTravel) -> Course:
     """The arrays of a motion.
 
     Args:
@@ -29,12 +31,15 @@ def course_of(motion: Motion, scene: Scene, travel: EdgeTravel) -> Course:
 
     robot, reacts = motion.robot, motion.mode.attitude_reacts
     whole, straight = travel.over(0.0, 1.0)
-    positions = motion.positions
-    if motion.mode.floats:
-        center = centers_of_mass(robot, motion.joint_values[:1])[0]
-        center = motion.positions[0] + rotate(motion.attitudes[0], center)
-        positions = np.tile(center, (len(positions), 1))
-    reaction = motion.reaction if reacts else _still(motion)
+    if isinstance(motion, CurvedMotion):
+        positions, pieces = np.zeros((motion.edges + 1, 3)), motion.pieces
+    else:
+        positions, pieces = motion.positions, straight_pieces(robot.nd)
+        if motion.mode.floats:
+            center = centers_of_mass(robot, motion.joint_values[:1])[0]
+            center = motion.positions[0] + rotate(motion.attitudes[0], center)
+            positions = np.tile(center, (len(positions), 1))
+    reaction = (motion.reaction if reacts else None) or _still(motion)
     one = reacts and motion.joints_are_straight
     return Course(
         robot.bodies,
@@ -48,10 +53,11 @@ def course_of(motion: Motion, scene: Scene, travel: EdgeTravel) -> Course:
         np.array(motion.joint_values),
         whole.points,
         straight,
+        pieces,
     )
 
 
-def course_in_base(motion: Motion, travel: EdgeTravel) -> Course:
+def course_in_base(motion: Motion | CurvedMotion, travel: EdgeTravel) -> Course:
     """The arrays of a motion as seen from the base, without obstacles.
 
     Args:
@@ -70,14 +76,23 @@ def course_in_base(motion: Motion, travel: EdgeTravel) -> Course:
         BaseMotion(False, False, np.zeros((motion.edges, 3)), 0.0),
         np.tile(IDENTITY, (motion.edges, 1)),
         _still(motion).partial,
-        np.zeros_like(motion.positions),
+        np.zeros((motion.edges + 1, 3)),
         np.array(motion.joint_values),
         whole.points,
         straight,
+        motion.pieces_in_base
+        if isinstance(motion, CurvedMotion)
+        else straight_pieces(motion.robot.nd),
     )
 
 
-def _still(motion: Motion) -> Reaction:
+def straight_pieces(joints: int) -> Pieces:
+    """No pieces, of a motion whose edges are straight."""
+    values, rates, bends = (np.empty((0, count, joints + 4)) for count in (4, 3, 2))
+    return Pieces(values, rates, bends, np.zeros(3))
+
+
+def _still(motion: Motion | CurvedMotion) -> Reaction:
     """A reaction to no motion, for arrays of the same kind."""
     begin = motion.joint_values[:1]
     return Reaction(motion.robot, begin, np.zeros_like(begin))

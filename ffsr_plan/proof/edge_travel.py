@@ -12,6 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.core.rotations import IDENTITY
+from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.travel_bound import IntervalTravel, TravelBound
 
@@ -30,7 +32,7 @@ class EdgeTravel:
             part of `speeds`.
     """
 
-    def __init__(self, motion: Motion) -> None:
+    def __init__(self, motion: Motion | CurvedMotion) -> None:
         """Bounds along the edges of a motion.
 
         Args:
@@ -40,12 +42,14 @@ class EdgeTravel:
 
         self._motion, self._bound = motion, TravelBound(motion.robot)
         self.shapes, self.points = self._bound.shapes, self._bound.points
-        reacts = motion.mode.attitude_reacts
+        turns = np.zeros((motion.edges, 3))
+        if motion.mode.has_wheels and isinstance(motion, Motion):
+            turns = motion.turns
         self.base = BaseMotion(
-            reacts,
+            motion.mode.attitude_reacts,
             motion.mode.floats,
-            np.zeros((motion.edges, 3)) if reacts else motion.turns,
-            float(motion.reaction.errors.sum()) if reacts else 0.0,
+            turns,
+            motion.attitude_error,
         )
         self._known: dict[tuple[float, float, bool], tuple[IntervalTravel, Flags]] = {}
         whole = self.over(0.0, 1.0)[0]
@@ -96,19 +100,28 @@ class EdgeTravel:
         """
         if (begin, end, in_base) in self._known:
             return self._known[begin, end, in_base]
-        motion, m = self._motion, self._motion.edges
-        time, lengths = 0.5 * (begin + end), np.full(self._motion.edges, end - begin)
-        rates = np.diff(motion.joint_values, axis=0)
-        values = motion.joint_values[:-1] + time * rates
-        if in_base:
-            travel = self._bound.in_base(values, rates, lengths)
-        else:
-            quats = motion.attitudes_at((np.arange(m) + time) / m)
-            travel = self._bound.in_world(values, rates, lengths, self.base, quats)
-        largest = lengths * np.max(travel.points["speed"], axis=1, initial=0.0)
+        travel = self._computed(begin, end, in_base)
+        largest = (end - begin) * np.max(travel.points["speed"], axis=1, initial=0.0)
         curvature = np.max(travel.points["curvature"], axis=1, initial=0.0)
         self._known[begin, end, in_base] = travel, curvature <= _STRAIGHTNESS * largest
         return self._known[begin, end, in_base]
+
+    def _computed(self, begin: float, end: float, in_base: bool) -> IntervalTravel:
+        """The bounds over one interval of every edge."""
+        motion, m, time = self._motion, self._motion.edges, 0.5 * (begin + end)
+        if isinstance(motion, CurvedMotion):
+            if in_base:
+                still = self.base._replace(reacts=False, floats=False, error=0.0)
+                quats = np.tile(IDENTITY, (m, 1))
+                return self._bound.on_curve(motion.pieces_in_base, begin, end, still, quats)
+            quats = motion.attitudes_at(np.arange(m), np.full(m, time))
+            return self._bound.on_curve(motion.pieces, begin, end, self.base, quats)
+        lengths, rates = np.full(m, end - begin), np.diff(motion.joint_values, axis=0)
+        values = motion.joint_values[:-1] + time * rates
+        if in_base:
+            return self._bound.in_base(values, rates, lengths)
+        quats = motion.attitudes_at((np.arange(m) + time) / m)
+        return self._bound.in_world(values, rates, lengths, self.base, quats)
 
 
 def _largest_speed(whole: IntervalTravel) -> Array:

@@ -8,6 +8,7 @@ from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 
@@ -15,7 +16,7 @@ from ffsr_plan.proof.edge_travel import EdgeTravel
 class NominalPlacements:
     """Placements of all shapes along the edges of a motion, computed once for each time."""
 
-    def __init__(self, motion: Motion) -> None:
+    def __init__(self, motion: Motion | CurvedMotion) -> None:
         self._motion = motion
         self._known: dict[float, Placements] = {}
         self._levels: dict[int, Placements] = {}
@@ -123,7 +124,7 @@ class SelfCollisionEdge:
     def __init__(
         self,
         query: SelfQuery,
-        motion: Motion,
+        motion: Motion | CurvedMotion,
         travel: EdgeTravel,
         layer: int,
         pairs: IntArray,
@@ -163,7 +164,7 @@ class SelfCollisionEdge:
         return both
 
 
-def joint_configuration(motion: Motion, layer: int, time: float) -> Array:
+def joint_configuration(motion: Motion | CurvedMotion, layer: int, time: float) -> Array:
     """The joints at a time on an edge, with the base at the origin.
 
     Args:
@@ -174,8 +175,8 @@ def joint_configuration(motion: Motion, layer: int, time: float) -> Array:
     Returns:
         (nq,) configuration.
     """
-    begin, end = motion.joint_values[[layer, layer + (time > 0.0)]]
-    joints = (1.0 - time) * begin + time * end
+    at = (layer, time) if layer < motion.edges else (layer - 1, 1.0)
+    (joints,) = motion.joints_at(np.array([at[0]]), np.array([at[1]]))
     return motion.robot.assemble(np.zeros(3), rotations.IDENTITY, joints)
 
 

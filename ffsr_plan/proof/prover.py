@@ -17,6 +17,7 @@ from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray, records
 from ffsr_plan.core.errors import NoPath
+from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.course import course_in_base, course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
@@ -52,7 +53,7 @@ class Prover:
 
     def __init__(
         self,
-        nominal: Motion,
+        nominal: Motion | CurvedMotion,
         scene: Scene,
         tolerance: float,
         deadline: Deadline | None = None,
@@ -60,7 +61,7 @@ class Prover:
         """Prepare the proofs.
 
         Args:
-            nominal: the motion from which offsets are counted.
+            nominal: the motion from which offsets are counted; along a curve they are zero.
             scene: the obstacles.
             tolerance: clearance below which an edge may be refused [m].
             deadline: after which distance queries, and so all proofs, raise `OutOfTime`.

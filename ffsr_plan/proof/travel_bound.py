@@ -14,6 +14,7 @@ from ffsr_plan.core.rotations import IDENTITY
 from ffsr_plan.robots.robot import SpaceRobot
 
 if TYPE_CHECKING:
+    from ffsr_plan.curves.kernels.pieces import Pieces
     from ffsr_plan.proof.kernels.travel import BaseMotion
 
 
@@ -124,6 +125,29 @@ class TravelBound:
             np.array(quats), scratch_for(len(self._bodies)), found,
         )  # fmt: skip
         return IntervalTravel(found, lengths, self.shapes["first"])
+
+    def on_curve(
+        self, pieces: Pieces, begin: float, end: float, base: BaseMotion, quats: Array
+    ) -> IntervalTravel:
+        """The bound on travel over one interval of every piece of a curve, for a base step of zero.
+
+        Args:
+            pieces: the curve, m pieces; what thrusters do to the base is part of the bound.
+            begin: start of the interval, in [0, 1].
+            end: its end.
+            base: what else the base does.
+            quats: (m, 4) attitudes of the base at the middles (xyzw).
+        """
+        from ffsr_plan.proof.kernels.curved_travel import curved_travels
+        from ffsr_plan.proof.kernels.travel import TRAVEL, scratch_for
+
+        found = records(TRAVEL, len(quats), len(self.points))
+        joints = np.empty((4, len(self._bodies) - 1))
+        curved_travels(
+            self._bodies, self.points, pieces, begin, end, base, np.array(quats), joints,
+            scratch_for(len(self._bodies)), found,
+        )  # fmt: skip
+        return IntervalTravel(found, np.full(len(quats), end - begin), self.shapes["first"])
 
     def in_base(self, values: Array, rates: Array, lengths: Array) -> IntervalTravel:
         """The bound on travel relative to the base, for a base step of zero.

@@ -17,8 +17,8 @@ class Pieces(NamedTuple):
     """The m cubic pieces of a curve; none where a motion has straight edges.
 
     The D = 3 + nd + 1 columns are the base origin where thrusters move it, or the centre of mass
-    where nothing does (world axes) [m]; the joint values [rad or m]; and a share from 0 to 1: that
-    of the rotation by wheels, or of the joints' way where it is straight and the base reacts.
+    where nothing does (world axes) [m]; the joint values [rad or m]; and a share from 0 to 1 of the
+    rotation by wheels, or where the base reacts of the way, which is the joints' if it is straight.
 
     Attributes:
         values: (m, 4, D) Bernstein coefficients.

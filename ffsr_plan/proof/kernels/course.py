@@ -15,9 +15,11 @@ from ffsr_plan.collision.nearest_sphere_kernels import (
 )
 from ffsr_plan.core.arrays import Array, Flags, IntArray, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
+from ffsr_plan.curves.kernels.pieces import Pieces, rate_between, value_at
 from ffsr_plan.dynamics.kernels.bodies import move_links, norm_of, weigh_links
 from ffsr_plan.dynamics.kernels.quaternions import fill_matrix, multiply, normalise, turn_by
 from ffsr_plan.dynamics.kernels.rotation_series import Partial, rotation_at
+from ffsr_plan.proof.kernels.curved_travel import bound_curved_travel
 from ffsr_plan.proof.kernels.travel import (
     TRAVEL,
     BaseMotion,
@@ -65,6 +67,8 @@ class Course(NamedTuple):
         values: (m + 1, nd) joint values at the corners [rad or m].
         whole: (m, P) travel over whole edges, of `TRAVEL`.
         straight: (m,) whether that travel bounds parts of an edge too.
+        pieces: the edges where they are curved, in place of positions and joint values; none where
+            they are straight.
     """
 
     bodies: Records
@@ -78,6 +82,7 @@ class Course(NamedTuple):
     values: Array
     whole: Records
     straight: Flags
+    pieces: Pieces
 
 
 class Memory(NamedTuple):
@@ -87,7 +92,8 @@ class Memory(NamedTuple):
         scratch: of the travel bound.
         travel: (P,) of it, `TRAVEL`.
         frames: (g, 15) placements of the shapes.
-        joints: (2, nd) joint values, and their change over the edge.
+        joints: (4, nd) joint values, and their change over the edge; on curved edges also bounds on
+            their first and second derivatives.
         quats: (3, 4) attitude, and room for two others.
         vectors: (3, 3) base origin, displacement of it over the edge, and offset of it [m].
         stack: of the search for spheres.
@@ -119,7 +125,7 @@ def memory_for(course: Course) -> Memory:
         scratch_for(len(course.bodies)),
         records(TRAVEL, len(course.points)),
         frames,
-        np.empty((2, course.values.shape[1])),
+        np.empty((4, course.values.shape[1])),
         np.empty((3, 4)),
         np.zeros((3, 3)),
         np.empty(STACK_SIZE, np.int32),
@@ -138,13 +144,44 @@ def attitude_at(course: Course, layer: int, time: float, quats: Array) -> None:
         each = len(starts) == edges
         segment = layer if each else 0
         at = time if each else (layer + time) / edges
+        if not each and len(course.pieces.values) > 0:
+            at = min(max(_share_at(course, layer, time), 0.0), 1.0)
         rotation_at(course.partial, segment, at, quats[2], turned)
         multiply(attitude, starts[segment], turned)
         normalise(attitude)
+    elif len(course.pieces.values) > 0:
+        turn, share = course.pieces.turn, _share_at(course, layer, time)
+        attitude[:] = starts[0]
+        turn_by(attitude, share * turn[0], share * turn[1], share * turn[2], turned)
     else:
         turn = course.base.turns[layer]
         attitude[:] = starts[layer]
         turn_by(attitude, time * turn[0], time * turn[1], time * turn[2], turned)
+
+
+@kernel
+def _share_at(course: Course, layer: int, time: float) -> float:
+    """The share of the whole rotation, or of the joints' way, at a time on a curved edge."""
+    return value_at(course.pieces, layer, time, course.pieces.values.shape[2] - 1)
+
+
+@kernel
+def _place_joints(course: Course, layer: int, time: float, memory: Memory) -> None:
+    """Fill in joint values and rates, and the position of the base, at a time on an edge."""
+    values, rates, position = memory.joints[0], memory.joints[1], memory.vectors[0]
+    if len(course.pieces.values) > 0:
+        for j in range(len(values)):
+            values[j] = value_at(course.pieces, layer, time, 3 + j)
+            rates[j] = rate_between(course.pieces, layer, time, time, 3 + j)
+        for a in range(3):
+            position[a] = value_at(course.pieces, layer, time, a)
+        return
+    begin, end = course.values[layer], course.values[layer + 1]
+    for j in range(len(values)):
+        values[j], rates[j] = (1.0 - time) * begin[j] + time * end[j], end[j] - begin[j]
+    begin, end = course.positions[layer], course.positions[layer + 1]
+    for a in range(3):
+        position[a] = (1.0 - time) * begin[a] + time * end[a]
 
 
 @kernel
@@ -158,17 +195,12 @@ def place_shapes(course: Course, layer: int, time: float, memory: Memory) -> Non
         memory: its frames are filled in.
     """
     values, rates, links = memory.joints[0], memory.joints[1], memory.scratch.links
-    begin, end = course.values[layer], course.values[layer + 1]
-    for j in range(len(values)):
-        values[j], rates[j] = (1.0 - time) * begin[j] + time * end[j], end[j] - begin[j]
+    _place_joints(course, layer, time, memory)
     bodies, shapes = course.bodies, course.shapes
     move_links(bodies, values, rates, links)
     attitude_at(course, layer, time, memory.quats)
     turned, position = memory.scratch.base[0].rotation, memory.vectors[0]
     fill_matrix(memory.quats[0], turned)
-    begin, end = course.positions[layer], course.positions[layer + 1]
-    for a in range(3):
-        position[a] = (1.0 - time) * begin[a] + time * end[a]
     if course.base.floats:  # the centre of mass stays
         weigh_links(bodies, links, memory.scratch.robot)
         lever, arm = bodies[0].lever, links[0].arm
@@ -238,6 +270,28 @@ def measure(
 
 
 @kernel
+def _bound_part(
+    course: Course, layer: int, begin: float, end: float, memory: Memory, travel: Records
+) -> None:
+    """Fill in the travel bound (P,) over a part of an edge."""
+    time, values, rates = 0.5 * (begin + end), memory.joints[0], memory.joints[1]
+    attitude_at(course, layer, time, memory.quats)
+    if len(course.pieces.values) > 0:
+        bound_curved_travel(
+            course.bodies, course.points, course.pieces, layer, begin, end, course.base,
+            memory.quats[0], memory.joints, memory.scratch, travel,
+        )  # fmt: skip
+        return
+    first, last = course.values[layer], course.values[layer + 1]
+    for j in range(len(values)):
+        values[j], rates[j] = (1.0 - time) * first[j] + time * last[j], last[j] - first[j]
+    bound_travel(
+        course.bodies, course.points, values, rates, end - begin, course.base, layer,
+        memory.quats[0], memory.scratch, travel,
+    )  # fmt: skip
+
+
+@kernel
 def travel_of_shapes(
     course: Course, layer: int, begin: float, end: float, memory: Memory, ways: Array
 ) -> None:
@@ -253,16 +307,8 @@ def travel_of_shapes(
     """
     length, travel, away = end - begin, course.whole[layer], -1.0
     if length < 1.0 and not course.straight[layer]:
-        time, values, rates = 0.5 * (begin + end), memory.joints[0], memory.joints[1]
-        first, last = course.values[layer], course.values[layer + 1]
-        for j in range(len(values)):
-            values[j], rates[j] = (1.0 - time) * first[j] + time * last[j], last[j] - first[j]
-        attitude_at(course, layer, time, memory.quats)
         travel = memory.travel
-        bound_travel(
-            course.bodies, course.points, values, rates, length, course.base, layer,
-            memory.quats[0], memory.scratch, travel,
-        )  # fmt: skip
+        _bound_part(course, layer, begin, end, memory, travel)
     elif length < 1.0:
         away = abs(0.5 * (begin + end) - 0.5)
     step, shapes = memory.vectors[1], course.shapes

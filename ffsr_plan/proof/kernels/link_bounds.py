@@ -59,33 +59,92 @@ def bound_links(
         bounds: (n,) `LINK_BOUND`, filled in but for the centres.
     """
     for j in range(1, len(bodies)):
-        parent, rate, slides = bodies[j].parent, abs(rates[j - 1]), bodies[j].prismatic
-        above, own, link = bounds[parent], bounds[j], links[j]
-        angular, change = above.angular, above.angular_change
-        # the distance from the parent's origin is a convex function of the joint value
         low, high = values[j - 1] - half * rates[j - 1], values[j - 1] + half * rates[j - 1]
-        a, b = bodies[j].offset, bodies[j].slide
-        offset = _longer(
-            a[0] + low * b[0],
-            a[1] + low * b[1],
-            a[2] + low * b[2],
-            a[0] + high * b[0],
-            a[1] + high * b[1],
-            a[2] + high * b[2],
-        )
-        # |w_p x s_j|: the component of the parent's angular velocity across the joint's axis
-        across = _across(link.rotation, bodies[j].axis, links[parent].angular)
-        across = min(angular, across + half * change)
-        turning, sliding = (0.0, rate) if slides else (rate, 0.0)
-        own.angular_change = change + across * turning
-        own.angular = min(angular + turning, norm_of(link.angular) + half * own.angular_change)
-        own.acceleration = (
-            above.acceleration + (change + angular * angular) * offset + 2.0 * across * sliding
-        )
-        own.speed = min(
-            above.speed + angular * offset + sliding, norm_of(link.linear) + half * own.acceleration
-        )
-        own.distance = min(above.distance + offset, norm_of(link.origin) + half * own.speed)
+        _bound_link(bodies, j, abs(rates[j - 1]), 0.0, low, high, half, links, bounds)
+
+
+@kernel
+def bound_curved_links(
+    bodies: Records,
+    values: Array,
+    rates: Array,
+    bends: Array,
+    half: float,
+    links: Records,
+    bounds: Records,
+) -> None:
+    """Bounds over an interval with joint rates that change.
+
+    Args:
+        bodies: (n,) the links, `BODY`.
+        values: (nd,) joint values at its middle [rad or m].
+        rates: (nd,) bounds on the magnitudes of their derivatives over it [rad or m].
+        bends: (nd,) bounds on those of their second derivatives [rad or m].
+        half: half its length.
+        links: (n,) `LINK_STATE`, moved to the middle.
+        bounds: (n,) `LINK_BOUND`, filled in but for the centres.
+    """
+    for j in range(1, len(bodies)):
+        low, high = values[j - 1] - half * rates[j - 1], values[j - 1] + half * rates[j - 1]
+        _bound_link(bodies, j, rates[j - 1], bends[j - 1], low, high, half, links, bounds)
+
+
+@kernel
+def _bound_link(
+    bodies: Records,
+    j: int,
+    rate: float,
+    bend: float,
+    low: float,
+    high: float,
+    half: float,
+    links: Records,
+    bounds: Records,
+) -> None:
+    """Bounds for a link from those of its parent.
+
+    Args:
+        bodies: (n,) the links, `BODY`.
+        j: the link.
+        rate: bound on the magnitude of its joint's rate [rad or m].
+        bend: bound on that of the rate's change [rad or m].
+        low: with `high`, ends of a range that contains the joint's values [rad or m].
+        high: see `low`.
+        half: half the length of the interval.
+        links: (n,) `LINK_STATE`, moved to the middle.
+        bounds: (n,) `LINK_BOUND`, filled in for the link but for its centre.
+    """
+    parent, slides = bodies[j].parent, bodies[j].prismatic
+    above, own, link = bounds[parent], bounds[j], links[j]
+    angular, change = above.angular, above.angular_change
+    # the distance from the parent's origin is a convex function of the joint value
+    a, b = bodies[j].offset, bodies[j].slide
+    offset = _longer(
+        a[0] + low * b[0],
+        a[1] + low * b[1],
+        a[2] + low * b[2],
+        a[0] + high * b[0],
+        a[1] + high * b[1],
+        a[2] + high * b[2],
+    )
+    # |w_p x s_j|: the component of the parent's angular velocity across the joint's axis
+    across = _across(link.rotation, bodies[j].axis, links[parent].angular)
+    across = min(angular, across + half * change)
+    turning, sliding, turning_bend, sliding_bend = rate, 0.0, bend, 0.0
+    if slides:
+        turning, sliding, turning_bend, sliding_bend = 0.0, rate, 0.0, bend
+    own.angular_change = change + across * turning + turning_bend
+    own.angular = min(angular + turning, norm_of(link.angular) + half * own.angular_change)
+    own.acceleration = (
+        above.acceleration
+        + (change + angular * angular) * offset
+        + 2.0 * across * sliding
+        + sliding_bend
+    )
+    own.speed = min(
+        above.speed + angular * offset + sliding, norm_of(link.linear) + half * own.acceleration
+    )
+    own.distance = min(above.distance + offset, norm_of(link.origin) + half * own.speed)
 
 
 @kernel

@@ -215,12 +215,45 @@ def bound_travel(
         scratch: filled in.
         travel: (P,) records of `TRAVEL`, filled in.
     """
-    half, links, bounds, robot = 0.5 * length, scratch.links, scratch.bounds, scratch.robot
-    move_links(bodies, values, rates, links)
-    bound_links(bodies, values, rates, half, links, bounds)
+    half, rate = 0.5 * length, scratch.robot[0].rate
+    move_links(bodies, values, rates, scratch.links)
+    bound_links(bodies, values, rates, half, scratch.links, scratch.bounds)
     x, y, z = base.turns[layer, 0], base.turns[layer, 1], base.turns[layer, 2]
-    robot[0].rate[0], robot[0].rate[1], robot[0].rate[2] = x, y, z
-    turning, mean = BaseBounds(math.sqrt(x * x + y * y + z * z), 0.0), scratch.base[0].center
+    rate[0], rate[1], rate[2] = x, y, z
+    turning = BaseBounds(math.sqrt(x * x + y * y + z * z), 0.0)
+    bound_points(bodies, points, half, base, turning, quat, scratch, travel)
+
+
+@kernel
+def bound_points(
+    bodies: Records,
+    points: Records,
+    half: float,
+    base: BaseMotion,
+    turning: BaseBounds,
+    quat: Array,
+    scratch: Scratch,
+    travel: Records,
+) -> None:
+    """The travel bound over an interval whose links have been bounded.
+
+    Args:
+        bodies: (n,) the links, `BODY`.
+        points: (P,) of the collision shapes, `HULL_POINT`.
+        half: half the length of the interval.
+        base: what the base does.
+        turning: bounds on the rotation of a base that does not react.
+        quat: (4,) attitude of the base at the middle (xyzw).
+        scratch: the links, moved to the middle, and their bounds; the base's rotation at the middle
+            if it does not react. The rest is filled in.
+        travel: (P,) records of `TRAVEL`, filled in.
+    """
+    links, bounds, robot, mean = (
+        scratch.links,
+        scratch.bounds,
+        scratch.robot,
+        scratch.base[0].center,
+    )
     for a in range(9):
         mean[a] = 0.0
     if base.reacts:

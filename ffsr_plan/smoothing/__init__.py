@@ -1,0 +1,1 @@
+"""From the proven path of a plan to a proven smooth curve."""

@@ -1,0 +1,74 @@
+"""Proof that a curve is free and keeps the limits, piece by piece."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.curves.curved_motion import CurvedMotion
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.proof.prover import Prover
+
+_ROUNDING = 1e-12  # share by which coefficients may leave a range
+
+
+class CurveProof(NamedTuple):
+    """What is proven of a curve of m pieces.
+
+    Attributes:
+        curve: the curve.
+        prover: proofs along it.
+        clearances: (m + 1,) at the ends of its pieces [m].
+        refused: pieces that leave a limit or could not be proven free.
+        outside: those of them that leave a joint's limits or the window of the base.
+    """
+
+    curve: CurvedMotion
+    prover: Prover
+    clearances: Array
+    refused: IntArray
+    outside: IntArray
+
+    def least_clearance(self) -> float:
+        """Proven lower bound on the clearance all along a curve without refused pieces [m]."""
+        still = np.zeros((self.curve.edges + 1, 3))
+        return self.prover.least_clearance(still, self.clearances)
+
+
+def prove_curve(problem: Problem, curve: CurvedMotion, tolerance: float) -> CurveProof:
+    """Prove a curve free of obstacles and self-collision, and within the limits.
+
+    Args:
+        problem: gives the obstacles, the limits and the window.
+        curve: the curve.
+        tolerance: clearance below which a piece may be refused [m].
+    """
+    m, still = curve.edges, np.zeros((curve.edges + 1, 3))
+    prover = Prover(curve, problem.obstacles, tolerance)
+    clearances = prover.clearances(np.arange(m + 1), still)
+    ends = np.column_stack([clearances[:-1], clearances[1:]])
+    verdicts = prover.certify_all(np.arange(m), still[1:], still[1:], ends)
+    outside = _outside(problem, curve)
+    refused = outside | _not_free(verdicts) | _not_free(prover.self_verdicts())
+    return CurveProof(curve, prover, clearances, np.flatnonzero(refused), np.flatnonzero(outside))
+
+
+def _not_free(verdicts: list[Verdict]) -> Flags:
+    return np.array([not verdict.free for verdict in verdicts])
+
+
+def _outside(problem: Problem, curve: CurvedMotion) -> Flags:
+    """(m,) whether a piece may leave a joint's limits or the window, by its coefficients."""
+    values, robot = curve.pieces.values, problem.robot
+    lower, upper = robot.lower, robot.upper
+    joints = values[:, :, 3:-1]
+    if problem.lattice is None and problem.mode.has_thrusters:
+        low, high = problem.base_window
+        lower, upper = np.concatenate([low, lower]), np.concatenate([high, upper])
+        joints = values[:, :, :-1]
+    slack = _ROUNDING * (1.0 + np.max(np.abs(joints), initial=0.0))
+    left = (joints < lower - slack) | (joints > upper + slack)
+    return np.asarray(np.any(left, axis=(1, 2)))
