@@ -32,9 +32,12 @@ if TYPE_CHECKING:
         PlanNotVerified,
         StartInCollision,
         UncheckedLinks,
+        UnprovenCurve,
         UnprovenPath,
         WorkerDied,
     )
+    from ffsr_plan.curves.curved_motion import CurvedMotion
+    from ffsr_plan.curves.smooth_curve import CurvePoints, SmoothCurve
     from ffsr_plan.display.live.live_view import LiveView
     from ffsr_plan.display.page_server import PageServer
     from ffsr_plan.dynamics import momentum
@@ -54,6 +57,7 @@ if TYPE_CHECKING:
     from ffsr_plan.lattice.roadmap import Roadmap
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.planning.plan_and_refine import plan, refine
+    from ffsr_plan.planning.smooth_plan import SmoothPlan
     from ffsr_plan.planning.warm_up import warm_up
     from ffsr_plan.portfolio.portfolio_planner import Portfolio
     from ffsr_plan.problem.lattice_settings import Axis, Lattice
@@ -105,6 +109,8 @@ __all__ = [
     "Components",
     "Contact",
     "Counts",
+    "CurvePoints",
+    "CurvedMotion",
     "Cycle",
     "EdgeProof",
     "FfsrPlanError",
@@ -148,6 +154,8 @@ __all__ = [
     "SearchResult",
     "SelfCollision",
     "SelfCollisions",
+    "SmoothCurve",
+    "SmoothPlan",
     "Solution",
     "SpaceRobot",
     "StartInCollision",
@@ -157,6 +165,7 @@ __all__ = [
     "TreeCycle",
     "TreePlanner",
     "UncheckedLinks",
+    "UnprovenCurve",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",
@@ -198,9 +207,12 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "PlanningError",
         "StartInCollision",
         "UncheckedLinks",
+        "UnprovenCurve",
         "UnprovenPath",
         "WorkerDied",
     ),
+    "curves.curved_motion": ("CurvedMotion",),
+    "curves.smooth_curve": ("CurvePoints", "SmoothCurve"),
     "display.live.live_view": ("LiveView",),
     "display.page_server": ("PageServer",),
     "dynamics.actuation_mode": ("Mode",),
@@ -214,6 +226,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "lattice.roadmap": ("Roadmap",),
     "planning.certified_plan": ("Plan",),
     "planning.plan_and_refine": ("plan", "refine"),
+    "planning.smooth_plan": ("SmoothPlan",),
     "planning.warm_up": ("warm_up",),
     "portfolio.portfolio_planner": ("Portfolio",),
     "problem.lattice_settings": ("Axis", "Lattice"),

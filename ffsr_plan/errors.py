@@ -15,6 +15,7 @@ from ffsr_plan.core.errors import (
     PlanNotVerified,
     StartInCollision,
     UncheckedLinks,
+    UnprovenCurve,
     UnprovenPath,
     WorkerDied,
 )
@@ -44,6 +45,7 @@ __all__ = [
     "PoseOutOfReach",
     "StartInCollision",
     "UncheckedLinks",
+    "UnprovenCurve",
     "UnprovenPath",
     "WorkerDied",
 ]

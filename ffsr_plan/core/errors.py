@@ -259,6 +259,30 @@ class UnprovenPath(PlanningError):
 
 
 @dataclass(eq=False, repr=False)
+class UnprovenCurve(PlanningError):
+    """No smooth curve along a plan could be proven free, not even its path at rest at every bend.
+
+    Attributes:
+        edge: the first edge of the path that was refused, from 1 on.
+        edges: their number.
+        contact: the nearest pair in its middle; its depth is negative apart.
+    """
+
+    edge: int
+    edges: int
+    contact: Contact
+
+    def message(self) -> str:
+        """Where the proof fails, and what may help."""
+        link, obstacle, depth, source = self.contact
+        return (
+            f"no smooth curve could be proven free: on edge {self.edge} of {self.edges}, link "
+            f"'{link}' {approach(-depth)} {obstacle_name(obstacle, source)}; what may help: a plan "
+            "with more clearance, by min_clearance or a larger delta"
+        )
+
+
+@dataclass(eq=False, repr=False)
 class PathNotFound(PlanningError):
     """No path was found without a lattice; this does not prove that none exists.
 

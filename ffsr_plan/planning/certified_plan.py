@@ -23,6 +23,7 @@ from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
 
 if TYPE_CHECKING:
     from ffsr_plan.display.page_server import PageServer
+    from ffsr_plan.planning.smooth_plan import SmoothPlan
     from ffsr_plan.verification.verify import Report
 
 
@@ -90,6 +91,20 @@ class Plan(PlanData):
             velocity_jump=velocity_jump,
         )
         return timed(self.motion, limits, self.certificate.least_clearance)
+
+    def smooth(self) -> SmoothPlan:
+        """The plan along a smooth curve without corners, proven free as the plan is.
+
+        The nodes become control points of a cubic spline. Where it comes too close to something,
+        more control points are taken, or in the last resort the plan's own path with rests; `kind`
+        of the result tells which.
+
+        Raises:
+            UnprovenCurve: nothing could be proven, not even the plan's path with rests.
+        """
+        from ffsr_plan.planning.smooth_plan import smoothed
+
+        return smoothed(self)
 
     def verify(
         self, samples: int | None = None, on_progress: Callable[[float], object] | None = None

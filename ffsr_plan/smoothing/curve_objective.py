@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
 from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.curves.splines import evaluate
 from ffsr_plan.problem.objective import objective
@@ -15,7 +15,7 @@ _SAMPLES = 32  # middles of parts of a piece: L is precise to some 1e-6 of it
 _STATIONS = 39  # as for plans without a lattice
 
 
-def curve_length(problem: Problem, curve: CurvedMotion) -> Array:
+def curve_lengths(problem: Problem, curve: CurvedMotion) -> Array:
     """Length of the parts of a curve.
 
     On a lattice the displacement from the nominal motion is perpendicular to it, as in Eq. 6;
@@ -53,7 +53,7 @@ def curve_objective(problem: Problem, curve: CurvedMotion, nodes: Array, lengths
         problem: gives the obstacles, delta, the unit of length and the largest clearance.
         curve: the curve.
         nodes: parameters, in pieces, of the inner nodes of a lattice; not used without one.
-        lengths: of `curve_length` [m].
+        lengths: of `curve_lengths` [m].
 
     Returns:
         F [length units].

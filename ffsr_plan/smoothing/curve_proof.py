@@ -22,6 +22,7 @@ class CurveProof(NamedTuple):
         curve: the curve.
         prover: proofs along it.
         clearances: (m + 1,) at the ends of its pieces [m].
+        node_queries: Coal queries for these.
         refused: pieces that leave a limit or could not be proven free.
         outside: those of them that leave a joint's limits or the window of the base.
     """
@@ -29,6 +30,7 @@ class CurveProof(NamedTuple):
     curve: CurvedMotion
     prover: Prover
     clearances: Array
+    node_queries: int
     refused: IntArray
     outside: IntArray
 
@@ -49,11 +51,19 @@ def prove_curve(problem: Problem, curve: CurvedMotion, tolerance: float) -> Curv
     m, still = curve.edges, np.zeros((curve.edges + 1, 3))
     prover = Prover(curve, problem.obstacles, tolerance)
     clearances = prover.clearances(np.arange(m + 1), still)
+    node_queries = prover.queries
     ends = np.column_stack([clearances[:-1], clearances[1:]])
     verdicts = prover.certify_all(np.arange(m), still[1:], still[1:], ends)
     outside = _outside(problem, curve)
     refused = outside | _not_free(verdicts) | _not_free(prover.self_verdicts())
-    return CurveProof(curve, prover, clearances, np.flatnonzero(refused), np.flatnonzero(outside))
+    return CurveProof(
+        curve,
+        prover,
+        clearances,
+        node_queries,
+        np.flatnonzero(refused),
+        np.flatnonzero(outside),
+    )
 
 
 def _not_free(verdicts: list[Verdict]) -> Flags:

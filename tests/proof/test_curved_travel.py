@@ -91,7 +91,11 @@ def test_along_straight_edges_the_bound_is_that_of_straight_edges(mode, seed):
     steps, still = motion.base_steps(), np.zeros((edges, 3))
     for begin, end in ((0.0, 1.0), (0.5, 0.75), (0.125, 0.25)):
         for in_base in (False, True):
-            expected, found = (EdgeTravel(each).over(begin, end, in_base)[0] for each in (motion, curve))
+            expected, found = (
+                EdgeTravel(each).over(begin, end, in_base)[0] for each in (motion, curve)
+            )
             moves = still if in_base else steps
             wanted = expected.bounds(np.arange(edges), moves)
-            assert found.bounds(np.arange(edges), still) == pytest.approx(wanted, rel=1e-8, abs=1e-12)
+            assert found.bounds(np.arange(edges), still) == pytest.approx(
+                wanted, rel=1e-8, abs=1e-12
+            )
