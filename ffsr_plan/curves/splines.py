@@ -8,7 +8,7 @@ without curvature there. Control points in equal steps on a line give that line,
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import solveh_banded
+from scipy.linalg import solve_banded
 
 from ffsr_plan.core.arrays import Array, IntArray
 
@@ -23,10 +23,11 @@ def bernstein_pieces(control: Array) -> Array:
         (m, 4, k) coefficients; the last of a piece is the first of the next, bit for bit.
     """
     knots = control.copy()
-    knots[1:-1] = (control[:-2] + 4.0 * control[1:-1] + control[2:]) / 6.0
-    begin, end = control[:-1], control[1:]
-    inner = (2.0 * begin + end) / 3.0, (begin + 2.0 * end) / 3.0
-    return np.stack([knots[:-1], *inner, knots[1:]], axis=1)
+    step = np.diff(control, axis=0)  # by differences: what does not move stays as it is
+    knots[1:-1] += np.diff(step, axis=0) / 6.0
+    return np.stack(
+        [knots[:-1], control[:-1] + step / 3.0, control[1:] - step / 3.0, knots[1:]], axis=1
+    )
 
 
 def derivative(coefficients: Array) -> Array:
@@ -61,6 +62,6 @@ def control_points_through(nodes: Array) -> Array:
     if len(inner):
         inner[0] -= nodes[0]
         inner[-1] -= nodes[-1]
-        bands = np.array([np.ones(len(inner)), np.full(len(inner), 4.0)])
-        control[1:-1] = solveh_banded(bands, inner)
+        bands = np.repeat([[1.0], [4.0], [1.0]], len(inner), axis=1)
+        control[1:-1] = solve_banded((1, 1), bands, inner)
     return control
