@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.curves.control_points import control_points_on
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.smoothing import proven_curve as ladder
@@ -90,7 +91,10 @@ def test_where_nothing_can_be_proven_the_edge_and_the_obstacle_are_named():
 def test_joints_that_cut_corners_far_away_are_refined_too(robot):
     """An obstacle beside a straight part of the path, where the base is turned otherwise."""
     joints = np.zeros((9, robot.nd))
-    joints[:, 0], joints[:, 1] = [0, 0.8, 1.6, 1.6, 0.8, 0, 0, 0, 0], [0, 0, 0, 1, 1, 1, 0, 0, 0]
+    joints[:, 0], joints[:, 1] = (
+        [0, 0.5, 1, 1, 0.5, 0, 0, 0, 0],
+        [0, 0, 0, -0.8, -0.8, -0.8, 0, 0, 0],
+    )
     positions = np.zeros((9, 3))
     positions[:, 0] = [0, 0, 0, 0, 0, 0, 0, 1, 2]
     start, goal = robot.assemble(positions[[0, -1]], np.eye(4)[[3, 3]], joints[[0, -1]])
@@ -101,12 +105,9 @@ def test_joints_that_cut_corners_far_away_are_refined_too(robot):
     apart = 2.0 * np.arccos(min(1.0, abs(smooth.attitudes[-1] @ straight)))
     assert apart > 1e-3
     problem = fp.Problem(robot, fp.Scene(), start, goal)
-    q = motion.at(np.full(20, 7), np.linspace(0, 1, 20))
-    smooth_q = smooth.at(np.full(20, 7), np.linspace(0, 1, 20))
-    for side in (-1.0, 1.0):
-        center = touching_sphere(robot, q, smooth_q, side)
-        if center is not None:
-            break
+    q = motion.at(np.repeat(np.arange(8), 200), np.tile(np.linspace(0, 1, 200), 8))
+    smooth_q = smooth.at(np.full(200, 7), np.linspace(0, 1, 200))
+    center = touching_sphere(robot, q, smooth_q)
     scene = fp.Scene([center[:3]], [center[3]])
     problem = replace(problem, scene=scene)
     first = prove_curve(problem, smooth, 1e-4)
@@ -115,20 +116,22 @@ def test_joints_that_cut_corners_far_away_are_refined_too(robot):
     assert found.kind == "refined spline"
 
 
-def touching_sphere(robot, path, other, side):
-    """A sphere beyond the end of an arm that a path misses and another one hits; None if none."""
+def touching_sphere(robot, path, other):
+    """A sphere that a path misses and another one hits."""
 
-    def gaps(reach, along):
-        scene = fp.Scene([[along, side * reach, 0.0]], [0.05])
-        return [min(float(fp.clearance(robot, scene, q)) for q in each) for each in (path, other)]
+    def gaps(reach, angle):
+        center = [1.5 + reach * np.cos(angle), reach * np.sin(angle), 0.0]
+        scene = fp.Scene([center], [0.05])
+        query = ObstacleQuery(robot, scene)
+        both = [query.distances(each).min() for each in (path, other)]
+        return both, np.append(center, 0.05)
 
-    for along in np.linspace(-0.5, 2.5, 13):
-        near, far = 0.5, 5.0
-        if gaps(near, along)[1] > 0.0:
-            continue
-        while far - near > 1e-5:  # the other one just touches
+    for angle in np.linspace(0.0, 2.0 * np.pi, 36, endpoint=False):
+        near, far = 0.0, 6.0
+        while far - near > 1e-4:  # the other one just touches
             middle = 0.5 * (near + far)
-            near, far = (middle, far) if gaps(middle, along)[1] < -3e-4 else (near, middle)
-        if gaps(near, along)[0] > 3e-4:
-            return np.array([along, side * near, 0.0, 0.05])
-    return None
+            near, far = (middle, far) if gaps(middle, angle)[0][1] < -3e-4 else (near, middle)
+        found, sphere = gaps(near, angle)
+        if found[0] > 3e-4:
+            return sphere
+    raise AssertionError("no sphere tells the two apart")
