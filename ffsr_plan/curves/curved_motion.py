@@ -10,8 +10,8 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.curves.control_points import ControlPoints
 from ffsr_plan.curves.curved_reaction import CurvedReaction
-from ffsr_plan.curves.kernels.pieces import Pieces
-from ffsr_plan.curves.splines import bernstein_pieces, derivative, evaluate
+from ffsr_plan.curves.kernels.pieces import FIRST_JOINT, Pieces
+from ffsr_plan.curves.splines import evaluate, pieces_with
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.reaction import Reaction
@@ -47,10 +47,9 @@ class CurvedMotion:
         """
         self.robot, self.mode, self.control = motion.robot, motion.mode, control
         self._start = motion.attitudes[0]
-        values = bernstein_pieces(control.table)
-        rates = derivative(values)
         turn = motion.turns.sum(axis=0) if self.mode.has_wheels else np.zeros(3)
-        self.pieces = Pieces(values, rates, derivative(rates), turn)
+        self.pieces = pieces_with(control.table, turn)
+        values = self.pieces.values
         self.joints_are_straight = motion.joints_are_straight
         self.reaction: Reaction | None = None
         if self.mode.attitude_reacts:
@@ -80,10 +79,9 @@ class CurvedMotion:
     @cached_property
     def pieces_in_base(self) -> Pieces:
         """The curve as seen from the base: joints alone."""
-        values, rates, bends = (each.copy() for each in self.pieces[:3])
-        for each in (values, rates, bends):
-            each[:, :, :3] = 0.0
-        return Pieces(values, rates, bends, np.zeros(3))
+        rows = self.pieces.rows.copy()
+        rows[:, :, :FIRST_JOINT] = 0.0
+        return Pieces(rows)
 
     def configurations(self) -> Array:
         """(m + 1, nq) at the ends of the pieces."""

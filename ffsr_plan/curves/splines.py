@@ -11,6 +11,7 @@ import numpy as np
 from scipy.linalg import solve_banded
 
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.curves.kernels.pieces import BENDS, RATES, ROWS, TURN, VALUES, Pieces
 
 
 def bernstein_pieces(control: Array) -> Array:
@@ -35,6 +36,21 @@ def derivative(coefficients: Array) -> Array:
     degree = coefficients.shape[1] - 1
     steps: Array = degree * np.diff(coefficients, axis=1)
     return steps
+
+
+def pieces_with(control: Array, turn: Array) -> Pieces:
+    """The pieces of a curve.
+
+    Args:
+        control: (m + 1, D) control points, columns as in `Pieces`.
+        turn: (3,) rotation by wheels from start to goal, base axes [rad].
+    """
+    rows = np.zeros((len(control) - 1, ROWS, control.shape[1]))
+    rows[:, VALUES:RATES] = values = bernstein_pieces(control)
+    rows[:, RATES:BENDS] = rates = derivative(values)
+    rows[:, BENDS:TURN] = derivative(rates)
+    rows[:, TURN, :3] = turn
+    return Pieces(rows)
 
 
 def evaluate(coefficients: Array, piece: IntArray, time: Array) -> Array:

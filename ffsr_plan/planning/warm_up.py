@@ -47,7 +47,9 @@ def warm_up(on_progress: Callable[[float], object] | None = None) -> int:
         raise InvalidInput("on_progress", on_progress, "a function, or None")
     watch, cases = Stopwatch(), list(_cases())
     for done, (problem, planner) in enumerate(cases):
-        plan(problem, planner, on_interrupt="raise").verify(1)
+        found = plan(problem, planner, on_interrupt="raise")
+        found.verify(1)
+        found.smooth()
         if on_progress is not None:
             on_progress((done + 1) / len(cases))
     last = cases[-1][0]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ffsr_plan.core.rotations import IDENTITY, rotate
 from ffsr_plan.curves.curved_motion import CurvedMotion
-from ffsr_plan.curves.kernels.pieces import Pieces
+from ffsr_plan.curves.kernels.pieces import ROWS, Pieces
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.reaction import Reaction
@@ -88,8 +88,7 @@ def course_in_base(motion: Motion | CurvedMotion, travel: EdgeTravel) -> Course:
 
 def straight_pieces(joints: int) -> Pieces:
     """No pieces, of a motion whose edges are straight."""
-    values, rates, bends = (np.empty((0, count, joints + 4)) for count in (4, 3, 2))
-    return Pieces(values, rates, bends, np.zeros(3))
+    return Pieces(np.empty((0, ROWS, joints + 4)))
 
 
 def _still(motion: Motion | CurvedMotion) -> Reaction:

@@ -8,8 +8,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import records
 from ffsr_plan.curves.curved_reaction import CurvedReaction
 from ffsr_plan.curves.kernels import curved_reaction as kernels
-from ffsr_plan.curves.kernels.pieces import Pieces
-from ffsr_plan.curves.splines import bernstein_pieces, derivative
+from ffsr_plan.curves.splines import pieces_with
 from ffsr_plan.dynamics.kernels.rate_bound import EXCURSION, rate_bound
 from ffsr_plan.dynamics.reaction import Reaction
 from tests.dynamics.test_reaction_bound import complex_rate, states_at
@@ -20,8 +19,7 @@ from tests.helpers.urdf_builders import random_robot
 def pieces_of(joints):
     """A curve with control points (m + 1, nd) of the joints."""
     table = np.hstack([np.zeros((len(joints), 3)), joints, np.zeros((len(joints), 1))])
-    values = bernstein_pieces(table)
-    return Pieces(values, derivative(values), derivative(derivative(values)), np.zeros(3))
+    return pieces_with(table, np.zeros(3))
 
 
 @pytest.mark.parametrize("seed", range(8))

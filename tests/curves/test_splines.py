@@ -12,6 +12,7 @@ from ffsr_plan.curves.splines import (
     control_points_through,
     derivative,
     evaluate,
+    pieces_with,
 )
 from tests.helpers.dense_curve import spline
 
@@ -90,9 +91,8 @@ def test_a_curve_rests_at_a_control_point_that_is_there_thrice_and_keeps_to_the_
 @pytest.mark.parametrize("seed", range(50))
 def test_bounds_over_a_part_hold_and_are_met_by_some_piece(seed):
     rng = np.random.default_rng(seed)
-    values = bernstein_pieces(rng.normal(size=(4, 5)))
-    rates = derivative(values)
-    made = kernels.Pieces(values, rates, derivative(rates), np.zeros(3))
+    made = pieces_with(rng.normal(size=(4, 5)), np.zeros(3))
+    values = made.values
     begin, end = np.sort(rng.random(2)).tolist()
     edge, time = np.full(201, 1), np.linspace(begin, end, 201)
     rate, bend = evaluate(made.rates, edge, time), evaluate(made.bends, edge, time)

@@ -40,6 +40,7 @@ for name in sys.argv[1:]:
         except fp.PlanningError:
             continue
         plan.verify(5)
+        plan.smooth()
         figure_files(plan)
     print(name, sorted(known() - before))
 """

@@ -13,7 +13,13 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Records
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.curves.kernels.pieces import Pieces, bend_at, rate_between, value_at
+from ffsr_plan.curves.kernels.pieces import (
+    FIRST_JOINT,
+    Pieces,
+    bend_at,
+    joints_at,
+    rate_between,
+)
 from ffsr_plan.dynamics.kernels.bodies import base_rate, move_links, weigh_links
 from ffsr_plan.dynamics.kernels.rate_bound import excursion_of_link, rate_bound
 from ffsr_plan.dynamics.kernels.reaction import (
@@ -28,8 +34,6 @@ from ffsr_plan.dynamics.kernels.reaction import (
     rate_at_point,
 )
 from ffsr_plan.dynamics.kernels.rotation_series import POINTS, TERMS
-
-_JOINTS = 3  # column of the first one
 
 
 class CurveMemory(NamedTuple):
@@ -53,18 +57,10 @@ def curve_memory_for(count: int) -> CurveMemory:
 
 
 @kernel
-def joints_at(pieces: Pieces, piece: int, time: float, values: Array, rates: Array) -> None:
-    """Fill in joint values and rates (nd,) at a time on a piece."""
-    for j in range(len(values)):
-        values[j] = value_at(pieces, piece, time, _JOINTS + j)
-        rates[j] = rate_between(pieces, piece, time, time, _JOINTS + j)
-
-
-@kernel
 def _expand_joints(pieces: Pieces, piece: int, middle: float, half: float, powers: Array) -> None:
     """Fill in the power series (3, nd) of the joint values about the middle of a substep."""
     for j in range(powers.shape[1]):
-        column = _JOINTS + j
+        column = FIRST_JOINT + j
         third = bend_at(pieces, piece, 1.0, column) - bend_at(pieces, piece, 0.0, column)
         powers[0, j] = half * rate_between(pieces, piece, middle, middle, column)
         powers[1, j] = half * half * bend_at(pieces, piece, middle, column) / 2.0
@@ -168,7 +164,7 @@ def cut_curves(
     """
     values, links, robot = memory.straight.values, memory.straight.links, memory.straight.robot
     left = memory.straight.left
-    for k in range(piece, len(pieces.values)):
+    for k in range(piece, len(pieces.rows)):
         first, top = count, 1
         left[0, 0], left[0, 1] = 0.0, 1.0
         while top > 0:
@@ -194,7 +190,7 @@ def cut_curves(
             substep.segment, substep.begin, substep.length = k, start, length
             substep.error = error * length
             count += 1
-    return len(pieces.values), count
+    return len(pieces.rows), count
 
 
 @kernel

@@ -12,6 +12,11 @@ from typing import NamedTuple
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
 
+VALUES, RATES, BENDS, TURN, ROWS = 0, 4, 7, 9, 10
+"""Rows of `Pieces` at which its parts begin, and their number."""
+FIRST_JOINT = 3
+"""Column of the first joint."""
+
 
 class Pieces(NamedTuple):
     """The m cubic pieces of a curve; none where a motion has straight edges.
@@ -21,22 +26,38 @@ class Pieces(NamedTuple):
     rotation by wheels, or where the base reacts of the way, which is the joints' if it is straight.
 
     Attributes:
-        values: (m, 4, D) Bernstein coefficients.
-        rates: (m, 3, D) those of the derivative by time.
-        bends: (m, 2, D) those of the second derivative.
-        turn: (3,) rotation by wheels from start to goal, base axes [rad]; zero without.
+        rows: (m, 10, D) Bernstein coefficients of the values, of their derivatives by time and of
+            their second derivatives; in the last row the rotation by wheels from start to goal.
+            They are one array because kernels hand every array on in a dozen numbers.
     """
 
-    values: Array
-    rates: Array
-    bends: Array
-    turn: Array
+    rows: Array
+
+    @property
+    def values(self) -> Array:
+        """(m, 4, D) Bernstein coefficients."""
+        return self.rows[:, VALUES:RATES]
+
+    @property
+    def rates(self) -> Array:
+        """(m, 3, D) those of the derivative by time."""
+        return self.rows[:, RATES:BENDS]
+
+    @property
+    def bends(self) -> Array:
+        """(m, 2, D) those of the second derivative."""
+        return self.rows[:, BENDS:TURN]
+
+    @property
+    def turn(self) -> Array:
+        """(3,) rotation by wheels from start to goal, base axes [rad]; zero without."""
+        return self.rows[0, TURN, :3]
 
 
 @kernel
 def value_at(pieces: Pieces, piece: int, time: float, column: int) -> float:
     """A column at a time in [0, 1] on a piece."""
-    s, c = 1.0 - time, pieces.values[piece]
+    s, c = 1.0 - time, pieces.rows[piece]
     early = s * s * (s * c[0, column] + 3.0 * time * c[1, column])
     late = time * time * (3.0 * s * c[2, column] + time * c[3, column])
     return float(early + late)
@@ -48,16 +69,31 @@ def rate_between(pieces: Pieces, piece: int, u: float, v: float, column: int) ->
 
     Its coefficients over an interval are those at (begin, begin), (begin, end) and (end, end).
     """
-    c = pieces.rates[piece]
+    c, both, neither = pieces.rows[piece], u * v, (1.0 - u) * (1.0 - v)
     mixed = (1.0 - u) * v + u * (1.0 - v)
-    return float((1.0 - u) * (1.0 - v) * c[0, column] + mixed * c[1, column] + u * v * c[2, column])
+    ends = neither * c[RATES, column] + both * c[RATES + 2, column]
+    return float(ends + mixed * c[RATES + 1, column])
 
 
 @kernel
 def bend_at(pieces: Pieces, piece: int, time: float, column: int) -> float:
     """Second derivative of a column at a time on a piece; it is linear in time."""
-    c = pieces.bends[piece]
-    return float((1.0 - time) * c[0, column] + time * c[1, column])
+    c = pieces.rows[piece]
+    return float((1.0 - time) * c[BENDS, column] + time * c[BENDS + 1, column])
+
+
+@kernel
+def joints_at(pieces: Pieces, piece: int, time: float, values: Array, rates: Array) -> None:
+    """Fill in joint values and rates (nd,) at a time on a piece."""
+    for j in range(len(values)):
+        values[j] = value_at(pieces, piece, time, FIRST_JOINT + j)
+        rates[j] = rate_between(pieces, piece, time, time, FIRST_JOINT + j)
+
+
+@kernel
+def share_at(pieces: Pieces, piece: int, time: float) -> float:
+    """The share, the last column, at a time on a piece."""
+    return value_at(pieces, piece, time, pieces.rows.shape[2] - 1)
 
 
 @kernel

@@ -15,7 +15,7 @@ from ffsr_plan.collision.nearest_sphere_kernels import (
 )
 from ffsr_plan.core.arrays import Array, Flags, IntArray, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
-from ffsr_plan.curves.kernels.pieces import Pieces, rate_between, value_at
+from ffsr_plan.curves.kernels.pieces import TURN, Pieces, joints_at, share_at, value_at
 from ffsr_plan.dynamics.kernels.bodies import move_links, norm_of, weigh_links
 from ffsr_plan.dynamics.kernels.quaternions import fill_matrix, multiply, normalise, turn_by
 from ffsr_plan.dynamics.kernels.rotation_series import Partial, rotation_at
@@ -144,44 +144,19 @@ def attitude_at(course: Course, layer: int, time: float, quats: Array) -> None:
         each = len(starts) == edges
         segment = layer if each else 0
         at = time if each else (layer + time) / edges
-        if not each and len(course.pieces.values) > 0:
-            at = min(max(_share_at(course, layer, time), 0.0), 1.0)
+        if not each and len(course.pieces.rows) > 0:
+            at = min(max(share_at(course.pieces, layer, time), 0.0), 1.0)
         rotation_at(course.partial, segment, at, quats[2], turned)
         multiply(attitude, starts[segment], turned)
         normalise(attitude)
-    elif len(course.pieces.values) > 0:
-        turn, share = course.pieces.turn, _share_at(course, layer, time)
+    elif len(course.pieces.rows) > 0:
+        turn, share = course.pieces.rows[layer, TURN], share_at(course.pieces, layer, time)
         attitude[:] = starts[0]
         turn_by(attitude, share * turn[0], share * turn[1], share * turn[2], turned)
     else:
         turn = course.base.turns[layer]
         attitude[:] = starts[layer]
         turn_by(attitude, time * turn[0], time * turn[1], time * turn[2], turned)
-
-
-@kernel
-def _share_at(course: Course, layer: int, time: float) -> float:
-    """The share of the whole rotation, or of the joints' way, at a time on a curved edge."""
-    return value_at(course.pieces, layer, time, course.pieces.values.shape[2] - 1)
-
-
-@kernel
-def _place_joints(course: Course, layer: int, time: float, memory: Memory) -> None:
-    """Fill in joint values and rates, and the position of the base, at a time on an edge."""
-    values, rates, position = memory.joints[0], memory.joints[1], memory.vectors[0]
-    if len(course.pieces.values) > 0:
-        for j in range(len(values)):
-            values[j] = value_at(course.pieces, layer, time, 3 + j)
-            rates[j] = rate_between(course.pieces, layer, time, time, 3 + j)
-        for a in range(3):
-            position[a] = value_at(course.pieces, layer, time, a)
-        return
-    begin, end = course.values[layer], course.values[layer + 1]
-    for j in range(len(values)):
-        values[j], rates[j] = (1.0 - time) * begin[j] + time * end[j], end[j] - begin[j]
-    begin, end = course.positions[layer], course.positions[layer + 1]
-    for a in range(3):
-        position[a] = (1.0 - time) * begin[a] + time * end[a]
 
 
 @kernel
@@ -195,12 +170,22 @@ def place_shapes(course: Course, layer: int, time: float, memory: Memory) -> Non
         memory: its frames are filled in.
     """
     values, rates, links = memory.joints[0], memory.joints[1], memory.scratch.links
-    _place_joints(course, layer, time, memory)
+    begin, end = course.values[layer], course.values[layer + 1]
+    for j in range(len(values)):
+        values[j], rates[j] = (1.0 - time) * begin[j] + time * end[j], end[j] - begin[j]
+    curved = len(course.pieces.rows) > 0
+    if curved:
+        joints_at(course.pieces, layer, time, values, rates)
     bodies, shapes = course.bodies, course.shapes
     move_links(bodies, values, rates, links)
     attitude_at(course, layer, time, memory.quats)
     turned, position = memory.scratch.base[0].rotation, memory.vectors[0]
     fill_matrix(memory.quats[0], turned)
+    begin, end = course.positions[layer], course.positions[layer + 1]
+    for a in range(3):
+        position[a] = (1.0 - time) * begin[a] + time * end[a]
+        if curved:
+            position[a] = value_at(course.pieces, layer, time, a)
     if course.base.floats:  # the centre of mass stays
         weigh_links(bodies, links, memory.scratch.robot)
         lever, arm = bodies[0].lever, links[0].arm
@@ -270,28 +255,6 @@ def measure(
 
 
 @kernel
-def _bound_part(
-    course: Course, layer: int, begin: float, end: float, memory: Memory, travel: Records
-) -> None:
-    """Fill in the travel bound (P,) over a part of an edge."""
-    time, values, rates = 0.5 * (begin + end), memory.joints[0], memory.joints[1]
-    attitude_at(course, layer, time, memory.quats)
-    if len(course.pieces.values) > 0:
-        bound_curved_travel(
-            course.bodies, course.points, course.pieces, layer, begin, end, course.base,
-            memory.quats[0], memory.joints, memory.scratch, travel,
-        )  # fmt: skip
-        return
-    first, last = course.values[layer], course.values[layer + 1]
-    for j in range(len(values)):
-        values[j], rates[j] = (1.0 - time) * first[j] + time * last[j], last[j] - first[j]
-    bound_travel(
-        course.bodies, course.points, values, rates, end - begin, course.base, layer,
-        memory.quats[0], memory.scratch, travel,
-    )  # fmt: skip
-
-
-@kernel
 def travel_of_shapes(
     course: Course, layer: int, begin: float, end: float, memory: Memory, ways: Array
 ) -> None:
@@ -307,8 +270,22 @@ def travel_of_shapes(
     """
     length, travel, away = end - begin, course.whole[layer], -1.0
     if length < 1.0 and not course.straight[layer]:
+        time, values, rates = 0.5 * (begin + end), memory.joints[0], memory.joints[1]
         travel = memory.travel
-        _bound_part(course, layer, begin, end, memory, travel)
+        attitude_at(course, layer, time, memory.quats)
+        if len(course.pieces.rows) > 0:
+            bound_curved_travel(
+                course.bodies, course.points, course.pieces, layer, begin, end, course.base,
+                memory.quats[0], memory.joints, memory.scratch, travel,
+            )  # fmt: skip
+        else:
+            first, last = course.values[layer], course.values[layer + 1]
+            for j in range(len(values)):
+                values[j], rates[j] = (1.0 - time) * first[j] + time * last[j], last[j] - first[j]
+            bound_travel(
+                course.bodies, course.points, values, rates, length, course.base, layer,
+                memory.quats[0], memory.scratch, travel,
+            )  # fmt: skip
     elif length < 1.0:
         away = abs(0.5 * (begin + end) - 0.5)
     step, shapes = memory.vectors[1], course.shapes

@@ -9,12 +9,14 @@ from __future__ import annotations
 from ffsr_plan.core.arrays import Array, Records
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.curves.kernels.pieces import (
+    FIRST_JOINT,
+    TURN,
     Pieces,
+    joints_at,
     largest_base_rates,
     largest_bend,
     largest_rate,
     rate_between,
-    value_at,
 )
 from ffsr_plan.dynamics.kernels.bodies import move_links, norm_of
 from ffsr_plan.proof.kernels.link_bounds import bound_curved_links
@@ -50,18 +52,18 @@ def bound_curved_travel(
         scratch: filled in.
         travel: (P,) records of `TRAVEL`, filled in.
     """
-    half, middle, last = 0.5 * (end - begin), 0.5 * (begin + end), pieces.values.shape[2] - 1
+    half, middle, last = 0.5 * (end - begin), 0.5 * (begin + end), pieces.rows.shape[2] - 1
     values, rates, fastest, bends = joints[0], joints[1], joints[2], joints[3]
+    joints_at(pieces, piece, middle, values, rates)
     for j in range(len(values)):
-        values[j] = value_at(pieces, piece, middle, 3 + j)
-        rates[j] = rate_between(pieces, piece, middle, middle, 3 + j)
-        fastest[j] = largest_rate(pieces, piece, begin, end, 3 + j)
-        bends[j] = largest_bend(pieces, piece, begin, end, 3 + j)
+        fastest[j] = largest_rate(pieces, piece, begin, end, FIRST_JOINT + j)
+        bends[j] = largest_bend(pieces, piece, begin, end, FIRST_JOINT + j)
     move_links(bodies, values, rates, scratch.links)
     bound_curved_links(bodies, values, fastest, bends, half, scratch.links, scratch.bounds)
-    now, whole = rate_between(pieces, piece, middle, middle, last), norm_of(pieces.turn)
+    turn, now = pieces.rows[piece, TURN], rate_between(pieces, piece, middle, middle, last)
+    whole = norm_of(turn)
     for a in range(3):
-        scratch.robot[0].rate[a] = now * pieces.turn[a]
+        scratch.robot[0].rate[a] = now * turn[a]
     turning = BaseBounds(
         whole * largest_rate(pieces, piece, begin, end, last),
         whole * largest_bend(pieces, piece, begin, end, last),
