@@ -10,7 +10,7 @@ from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from tests.helpers.curved_flights import MODES, places, random_curve, shares_of_the_bound
-from tests.helpers.random_robots import random_tree
+from tests.helpers.random_robots import Limb, at, body, dot, put_together, random_tree
 
 ROBOTS, PARTS = 300, 5  # by six pieces and three modes: 27 000 intervals
 
@@ -99,3 +99,63 @@ def test_along_straight_edges_the_bound_is_that_of_straight_edges(mode, seed):
             assert found.bounds(np.arange(edges), still) == pytest.approx(
                 wanted, rel=1e-8, abs=1e-12
             )
+
+
+BENT = np.array([12.5, 4.5, 0.5, 0.5, 4.5, 12.5]) - 0.5  # on the middle piece q' = t - 1/2, q'' = 1
+LEVEL, MIDDLE = np.zeros(6), 2
+
+
+def one_joint(
+    kind,
+    base_mass,
+    base=LEVEL,
+    joint=LEVEL,
+    mode="free-flying",
+    turn=0.0,
+    share=None,
+    on_base=False,
+):
+    """A curve of a robot with one joint about z or along x, and a dot at (0.5, 0, 0).
+
+    Args:
+        kind: of the joint.
+        base_mass: mass and moment of the base, heavy or light against the link.
+        base: (6,) control points of the base origin along y [m].
+        joint: (6,) of the joint [rad or m].
+        mode: what actuates the base.
+        turn: of the base by wheels about z [rad].
+        share: (6,) of that turn.
+        on_base: whether the dot is on the base, and not on the link.
+    """
+    axis = 2 if kind == "revolute" else 0
+    made = Limb(0, kind, axis, at(), body(1.0, 0.1), [] if on_base else [dot(x=0.5)])
+    robot = put_together(body(base_mass, base_mass), [dot(x=0.5)] if on_base else [], [made])
+    positions = np.column_stack([LEVEL, base, LEVEL])
+    quats = rotations.exp(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, turn]]))
+    start, goal = robot.assemble(positions[[0, -1]], quats, joint[[0, -1], None])
+    motion = Motion(robot, mode, start, goal, positions, joint[:, None])
+    control = control_points_on(motion, np.arange(6.0))
+    return CurvedMotion(motion, control if share is None else control._replace(shares=share))
+
+
+@pytest.mark.parametrize(
+    ("curve", "least"),
+    [
+        (one_joint("revolute", 1.0, base=BENT), 0.999),  # max |p''|
+        (one_joint("prismatic", 1e12, joint=0.1 * BENT), 0.999),  # b_j of a sliding joint
+        (one_joint("revolute", 1e12, joint=0.01 * BENT), 0.98),  # b_j of a turning joint
+        (
+            one_joint("revolute", 1.0, joint=0.01 * BENT, on_base=True),
+            0.95,
+        ),  # l' of a base that reacts
+        (
+            one_joint("revolute", 1.0, mode="attitude-held", turn=0.3, share=0.1 * BENT),
+            0.97,
+        ),  # kappa of wheels
+    ],
+    ids=["base", "sliding", "turning", "reaction", "wheels"],
+)
+def test_each_term_of_a_curve_can_be_attained(curve, least):
+    """The point rests in the middle, so that the terms of the second derivatives are alone."""
+    assert shares_of_the_bound(curve, 0.0, 1.0)[MIDDLE].max() > least
+    assert shares_of_the_bound(curve, 0.0, 1.0).max() <= 1.0

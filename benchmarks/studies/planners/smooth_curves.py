@@ -147,12 +147,12 @@ def main() -> None:
         f"`python -m benchmarks.studies.planners.smooth_curves --count {args.count} --seconds "
         f"{args.seconds:g}`",
         "",
-        "`plan.smooth()` on refined optima of the random scenes, on the bundled scenarios, and on",
-        "the problems without a lattice of [Without a lattice](free_space.md): first paths, and",
-        f"plans after {args.seconds:g} s. L and F are compared with the plan's; times are those of a",
-        "processor, for curve, proof and figures. The last column has the spline through the nodes,",
-        "proven or not, against the curve that was taken: how much its direction turns in all, and",
-        "its largest curvature, both in the weighted space of base position and joints.",
+        "`plan.smooth()` on refined optima of the random scenes, on the bundled scenarios, and",
+        "on the problems without a lattice of [Without a lattice](free_space.md): first paths, and",
+        f"plans after {args.seconds:g} s. L and F are compared with the plan's; times are",
+        "processor time for curve, proof and figures. The last column has the spline through the",
+        "nodes, proven or not, against the curve that was taken: how much its direction turns in",
+        "all, and its largest curvature, both in the weighted space of base position and joints.",
         "",
         table(heads, rows),
     ]

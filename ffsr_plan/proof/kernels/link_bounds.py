@@ -59,8 +59,7 @@ def bound_links(
         bounds: (n,) `LINK_BOUND`, filled in but for the centres.
     """
     for j in range(1, len(bodies)):
-        low, high = values[j - 1] - half * rates[j - 1], values[j - 1] + half * rates[j - 1]
-        _bound_link(bodies, j, abs(rates[j - 1]), 0.0, low, high, half, links, bounds)
+        _bound_link(bodies, j, values[j - 1], abs(rates[j - 1]), 0.0, half, links, bounds)
 
 
 @kernel
@@ -85,18 +84,16 @@ def bound_curved_links(
         bounds: (n,) `LINK_BOUND`, filled in but for the centres.
     """
     for j in range(1, len(bodies)):
-        low, high = values[j - 1] - half * rates[j - 1], values[j - 1] + half * rates[j - 1]
-        _bound_link(bodies, j, rates[j - 1], bends[j - 1], low, high, half, links, bounds)
+        _bound_link(bodies, j, values[j - 1], rates[j - 1], bends[j - 1], half, links, bounds)
 
 
 @kernel
 def _bound_link(
     bodies: Records,
     j: int,
+    value: float,
     rate: float,
     bend: float,
-    low: float,
-    high: float,
     half: float,
     links: Records,
     bounds: Records,
@@ -106,10 +103,9 @@ def _bound_link(
     Args:
         bodies: (n,) the links, `BODY`.
         j: the link.
-        rate: bound on the magnitude of its joint's rate [rad or m].
+        value: of its joint at the middle of the interval [rad or m].
+        rate: bound on the magnitude of the joint's rate [rad or m].
         bend: bound on that of the rate's change [rad or m].
-        low: with `high`, ends of a range that contains the joint's values [rad or m].
-        high: see `low`.
         half: half the length of the interval.
         links: (n,) `LINK_STATE`, moved to the middle.
         bounds: (n,) `LINK_BOUND`, filled in for the link but for its centre.
@@ -118,6 +114,7 @@ def _bound_link(
     above, own, link = bounds[parent], bounds[j], links[j]
     angular, change = above.angular, above.angular_change
     # the distance from the parent's origin is a convex function of the joint value
+    low, high = value - half * rate, value + half * rate
     a, b = bodies[j].offset, bodies[j].slide
     offset = _longer(
         a[0] + low * b[0],
