@@ -286,7 +286,10 @@ def _may_be_none(cls: type, name: str) -> bool:
 
 
 def _call(cls: type) -> str:
-    return f"{cls.__name__}({', '.join(each.name for each in fields(cls))})"
+    names = ", ".join(each.name for each in fields(cls))
+    if cls.__name__.endswith("Table"):  # of a file; not part of the interface
+        return f"a table with keys among {names}"
+    return f"{cls.__name__}({names})"
 
 
 def _joined(place: list[str], what: str) -> str:

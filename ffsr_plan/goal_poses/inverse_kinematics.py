@@ -39,8 +39,9 @@ def inverse_kinematics(
     """A goal configuration at which a frame has the wanted pose, within the joint limits.
 
     A plan from `start` ends with this configuration on a lattice without posture axes. With posture
-    axes it takes `Problem(..., reach_attitude=True)`, which `Problem.reaching` and scenario files
-    set: without it the base arrives at another attitude, and the frame misses its pose.
+    axes, and without a lattice, it takes `Problem(..., reach_attitude=True)`, which
+    `Problem.reaching` and scenario files set: without it the base arrives at another attitude, and
+    the frame misses its pose.
 
     The search is local (damped least squares), from the start's joint values and then from random
     ones. Revolute joints leave out whole turns where wheels hold the base; where the base reacts, a

@@ -279,6 +279,9 @@ class Problem:
         """Raise `InvalidInput` if `reach_attitude` is set and cannot be."""
         if self.reach_attitude and self.mode.has_wheels:
             raise InvalidInput("reach_attitude", True, "False where wheels hold the attitude")
+        if self.reach_attitude and not self.robot.nd:
+            allowed = "False for a robot without joints, whose base does not react"
+            raise InvalidInput("reach_attitude", True, allowed)
         if self.reach_attitude and self.lattice and not self.lattice.postures:
             allowed = "a lattice with posture axes, or none"
             raise InvalidInput("reach_attitude", True, allowed)
@@ -289,9 +292,10 @@ class Problem:
         joints_move = float(np.max(np.abs(self.joint_displacement), initial=0.0)) > _SAME
         rotates = self.held_rotation > _SAME
         if not (translates or joints_move or rotates or self.reach_attitude):
-            raise InvalidInput(
-                "goal", self.goal.tolist(), "a configuration that differs from the start"
-            )
+            allowed = "a configuration that differs from the start in what the mode moves"
+            if np.linalg.norm(self.goal[:7] - self.start[:7]) > _SAME:
+                allowed += "; a base that reacts reaches an attitude with reach_attitude=True alone"
+            raise InvalidInput("goal", self.goal.tolist(), allowed)
         if not translates and self.lattice is not None and self.lattice.axes:
             raise InvalidInput(
                 "lattice",

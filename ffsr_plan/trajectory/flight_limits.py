@@ -19,6 +19,7 @@ from ffsr_plan.robots.urdf.joints import NO_JOINT
 from ffsr_plan.trajectory.straight_runs import StraightRuns
 
 _LARGEST_LIMIT = 1e9  # with larger ones thrust and delta-v would be dominated by rounding
+_NEEDED = "a finite number greater than 0: without it a flight could take no time at all"
 _OF_WHEELS = ("turn_velocity", "turn_acceleration")
 _OF_THRUSTERS = ("base_velocity", "thruster_acceleration", "thruster_jerk", "velocity_jump")
 PerJoint = float | Mapping[str, float] | None
@@ -197,12 +198,10 @@ def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, fl
     needed = {"thruster_acceleration": not floats, "turn_acceleration": bool(moves[1])}
     for k, (name, is_needed) in enumerate(needed.items()):
         if is_needed and not np.isfinite(limits.acceleration[k]):
-            raise InvalidInput(name, None, "a finite number greater than 0")
+            raise InvalidInput(name, None, _NEEDED)
     for k, name in enumerate(robot.joint_names, start=2):
         if moves[k] and not np.isfinite(limits.acceleration[k]):
-            raise InvalidInput(
-                f"joint_acceleration, joint {name}", None, "a finite number greater than 0"
-            )
+            raise InvalidInput(f"joint_acceleration, joint {name}", None, _NEEDED)
         if moves[k] and limits.velocity[k] <= 0.0:
             allowed = "greater than 0; the URDF's limit is 0, so another one has to be given"
             raise InvalidInput(f"joint_velocity, joint {name}", 0.0, allowed)

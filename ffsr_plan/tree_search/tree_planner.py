@@ -39,7 +39,7 @@ class TreePlanner(TreeSettings):
         """Raise `InvalidInput` if the problem has a lattice, naming planners for it."""
         if problem.lattice is not None:
             allowed = "max-min-ant-system, ant-system or lattice-optimum on a lattice, and "
-            allowed += "posture-annealing on one with posture axes"
+            allowed += "posture-annealing on one with posture axes; portfolio runs the trees too"
             raise InvalidInput("planner", self.name, allowed)
 
     def solve(self, problem: Problem, rng: np.random.Generator, request: SearchRequest) -> Solution:

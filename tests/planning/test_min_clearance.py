@@ -15,7 +15,7 @@ CASES = {
     "lattice-optimum": ("fig2a", fp.LatticeOptimum(), 12),
     "ant-system": ("fig2a", fp.AntSystem(cycles=4, ants=5), 12),
     "posture-annealing": ("gate", fp.PostureAnnealing(ants=4, cycles=6), None),
-    "tree-planner": (None, fp.TreePlanner(checks=60_000), None),
+    "tree-planner": (None, fp.TreePlanner(checks=200_000), None),
 }
 
 

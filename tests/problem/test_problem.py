@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from tests.helpers.urdf_builders import box, inertial, link, urdf
 
 
 @pytest.fixture
@@ -113,3 +114,23 @@ def test_displacements_lead_from_start_to_goal(robot):
     floating = fp.Problem(robot, fp.Scene(), robot.neutral(), goal, "free-floating")
     assert np.array_equal(floating.base_displacement, np.zeros(3))
     assert floating.held_rotation == 0.0
+
+
+def test_a_goal_that_only_an_attitude_tells_from_the_start_needs_it_demanded(robot):
+    scene, start = fp.Scene(), robot.configuration()
+    goal = robot.configuration(attitude=(0.5, 0.0, 0.0))
+    with pytest.raises(fp.InvalidInput, match="reach_attitude=True"):
+        fp.Problem(robot, scene, start, goal)
+    with pytest.raises(fp.InvalidInput, match=r"in what the mode moves$"):
+        fp.Problem(robot, scene, start, start)
+    assert fp.Problem(robot, scene, start, goal, reach_attitude=True).reach_attitude
+
+
+def test_without_joints_no_attitude_can_be_demanded(tmp_path):
+    path = tmp_path / "bus.urdf"
+    path.write_text(urdf(link("bus", inertial(5.0, (1.0, 1.0, 1.0)), box((1.0, 1.0, 1.0)))))
+    bus = fp.load_robot(path)
+    start = bus.configuration()
+    goal = bus.configuration((1.0, 0.0, 0.0), attitude=(0.5, 0.0, 0.0))
+    with pytest.raises(fp.InvalidInput, match="robot without joints"):
+        fp.Problem(bus, fp.Scene(), start, goal, reach_attitude=True)

@@ -14,7 +14,9 @@ from tests.helpers.free_scenes import beside_a_box, gap, scattered
 
 def searched(problem, reaches=(1.6,), checks=60_000, seed=0):
     space = SearchSpace(problem, 1e-3)
-    restarts = Restarts(space, np.random.default_rng(seed), TreeSettings(reaches=reaches))
+    restarts = Restarts(
+        space, np.random.default_rng(seed), TreeSettings(reaches=reaches, joint_range=None)
+    )
     return space, restarts, restarts.find(checks)
 
 

@@ -88,8 +88,10 @@ def draw_nearer(
     space: SearchArrays, trees: Trees, random: RandomState, most: float, sample: Array
 ) -> None:
     """Move a sample towards the straight way until a path through it is short enough, if any is."""
+    if most == np.inf:
+        return
     start, goal = trees.states[0, 0], trees.states[1, trees.roots[below(random, trees.counts[2])]]
-    if most == np.inf or distance(space.weights, 1, start, goal) >= most:
+    if distance(space.weights, 1, start, goal) >= most:
         return
     share = uniform(random)
     for _ in range(_MOST_NEARER):
