@@ -1,0 +1,184 @@
+"""Refinement of a path's lateral offsets to a small change of velocity, every edge proven free.
+
+Round by round the clearances at stations on the control polygon and on its curve are replaced by
+linear functions that are nowhere above them (`collision.near_pairs`), and the best offsets under
+these are taken (`least_change_programme`): where a path has been clear at all stations, it stays
+so, and its change of velocity falls. Offsets are lateral only: with layers free to move along the
+way too, a path could jump across an obstacle between two of them. Then the edges are proven free.
+Where one is refused, the place becomes another station.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan.collision.near_pairs import NearPairs
+from ffsr_plan.collision.shape_placements import Placements, shape_placements
+from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.errors import OutOfTime
+from ffsr_plan.fuel.least_change_programme import Cuts, Programme
+from ffsr_plan.fuel.stations import Stations, on_polygon, usual_stations
+from ffsr_plan.lattice.certificate import Counts
+from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.proof.prover import Prover
+from ffsr_plan.scene.scene import Scene
+from ffsr_plan.time_limit.deadline import Deadline
+
+_ROUNDS, _LEAST_GAIN = 25, 1e-4  # of one descent; relative, over which it goes on
+_PROOFS = 8  # how often a path is proven and corrected
+_STEPS_AT_ONCE = 2.0  # largest change of an offset in a round, in steps along the way
+_SPARE = 3.0  # clearance asked for at stations, in the tolerance of proofs
+_GROWTH = 1.6  # of that where edges are refused at stations
+
+
+class RefinedOffsets(NamedTuple):
+    """Offsets of control points, every edge between them proven free.
+
+    Attributes:
+        offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
+        clearances: (m + 1,) at the control points, in the scene of the proof [m].
+        change: change of velocity for a flight of unit duration [m].
+    """
+
+    offsets: Array
+    clearances: Array
+    change: float
+
+
+class FuelRefinement:
+    """Descents from several starts over one lattice.
+
+    Attributes:
+        edges_free: edges proven free so far.
+        edges_refused: edges refused so far.
+    """
+
+    def __init__(
+        self, lattice: LayeredLattice, prover: Prover, scene: Scene, deadline: Deadline
+    ) -> None:
+        """Prepare descents.
+
+        Args:
+            lattice: gives the nominal motion, the axes and their reach; one axis at least.
+            prover: proofs along the lattice's nominal motion.
+            scene: its obstacles, larger by the margin that is to be kept.
+            deadline: after which descents raise `OutOfTime`.
+        """
+        problem, self._lattice, self._prover = lattice.problem, lattice, prover
+        self._deadline, self._pairs = deadline, NearPairs(problem.robot, scene, deadline)
+        axes = [getattr(problem.given_lattice, name) for name in problem.given_lattice.axes]
+        self._rim = np.array([axis.half_count * axis.spacing for axis in axes])
+        self._step = float(np.linalg.norm(problem.base_displacement)) / lattice.divisions
+        self._tolerance = problem.tolerance
+        self.edges_free = self.edges_refused = 0
+        self._node_queries, self._queries_before = 0, prover.queries
+
+    def counts(self) -> Counts:
+        """Edges decided and queries spent so far."""
+        queries = self._prover.queries - self._queries_before - self._node_queries
+        stations = self._node_queries + self._pairs.count
+        return Counts(self.edges_free, self.edges_refused, stations, queries)
+
+    def refined(self, offsets: Array) -> RefinedOffsets | None:
+        """A path made better from a start, which need not be free.
+
+        Args:
+            offsets: (m + 1, 3) displacement of the base at the start of the descent [m].
+
+        Returns:
+            The path; None if none was proven.
+
+        Raises:
+            OutOfTime: at the deadline.
+        """
+        lattice = self._lattice
+        programme = Programme(lattice.divisions, self._step, self._rim)
+        present = offsets @ lattice.directions.T
+        stations, spare = usual_stations(lattice.divisions), _SPARE * self._tolerance
+        for _ in range(_PROOFS):
+            present = self._descended(programme, present, stations, spare)
+            at = present @ lattice.directions
+            clearances, edges, times = self._refused(at)
+            if not len(edges):
+                change = lattice.divisions * programme.change(present)
+                return RefinedOffsets(frozen(at), frozen(clearances), change)
+            stations = stations.with_others(on_polygon(edges, times))
+            spare *= _GROWTH
+        return None
+
+    def _descended(
+        self, programme: Programme, offsets: Array, stations: Stations, spare: float
+    ) -> Array:
+        """Offsets (m + 1, axes) after rounds that end where little is gained."""
+        lattice, radius = self._lattice, _STEPS_AT_ONCE * self._step
+        q = lattice.nominal.at(stations.edges, stations.times)
+        placed = shape_placements(lattice.problem.robot, q)
+        last = np.inf
+        for _ in range(_ROUNDS):
+            cuts = self._cuts(placed, stations, offsets, spare, radius)
+            offsets = programme.best(offsets, cuts, radius)
+            missing = np.maximum(-(cuts.values), 0.0).sum()
+            value = programme.change(offsets) + missing
+            if value > last * (1.0 - _LEAST_GAIN):
+                break
+            last = value
+        return offsets
+
+    def _cuts(
+        self, placed: Placements, stations: Stations, offsets: Array, spare: float, radius: float
+    ) -> Cuts:
+        """Linear clearances of all pairs that a round may bring together."""
+        directions = self._lattice.directions
+        shifts = stations.displaced(offsets) @ directions
+        limit = spare + radius * np.sqrt(len(directions))
+        points, slopes, values = [], [], []
+        for k, shift in enumerate(shifts):
+            gaps = self._pairs.at(placed, k, shift, limit)
+            across = gaps.gradients @ directions.T
+            points.append(np.tile(stations.points[k], (len(across), 1)))
+            slopes.append(stations.shares[k][None, :, None] * across[:, None, :])
+            values.append(gaps.distances - spare)
+        return Cuts(*map(np.concatenate, (points, slopes, values)))
+
+    def _refused(self, offsets: Array) -> tuple[Array, IntArray, Array]:
+        """Clearances (m + 1,) at the control points; edges not proven free, and times on them."""
+        prover, m = self._prover, self._lattice.divisions
+        before, layers = prover.queries, np.arange(m + 1)
+        clearances = prover.clearances(layers, offsets)
+        self._node_queries += prover.queries - before
+        ends = np.column_stack([clearances[:-1], clearances[1:]])
+        verdicts = prover.certify_all(layers[:-1], offsets[:-1], offsets[1:], ends)
+        free = np.array([verdict.free for verdict in verdicts])
+        self.edges_free += int(np.count_nonzero(free))
+        self.edges_refused += int(np.count_nonzero(~free))
+        edges = np.flatnonzero(~free)
+        return clearances, edges, np.array([verdicts[k].time for k in edges.tolist()])
+
+
+def best_refined(
+    refinement: FuelRefinement, starts: dict[str, Array]
+) -> tuple[str, RefinedOffsets] | None:
+    """The best of the descents from several starts, and the name of its start.
+
+    Args:
+        refinement: the descents.
+        starts: (m + 1, 3) offsets [m] by name; of equals the first wins.
+
+    Returns:
+        None if no path was proven. At the deadline, the best that was proven by then.
+
+    Raises:
+        OutOfTime: at the deadline, if none was proven by then.
+    """
+    best: tuple[str, RefinedOffsets] | None = None
+    try:
+        for name, offsets in starts.items():
+            found = refinement.refined(offsets)
+            if found is not None and (best is None or found.change < best[1].change):
+                best = name, found
+    except OutOfTime:
+        if best is None:
+            raise
+    return best
