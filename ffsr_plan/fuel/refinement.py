@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ffsr_plan.collision.distances import Nearest
 from ffsr_plan.collision.near_pairs import NearPairs
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray, frozen
@@ -47,10 +48,26 @@ class RefinedOffsets(NamedTuple):
     change: float
 
 
+class BestRefined(NamedTuple):
+    """The best of several descents.
+
+    Attributes:
+        start: name of its start.
+        path: the path.
+        cut_short: whether the deadline ended the descents.
+    """
+
+    start: str
+    path: RefinedOffsets
+    cut_short: bool
+
+
 class FuelRefinement:
     """Descents from several starts over one lattice.
 
     Attributes:
+        nearest: layer that was left, and link and obstacle that came too close on the edge that was
+            refused last; None without any.
         edges_free: edges proven free so far.
         edges_refused: edges refused so far.
     """
@@ -73,6 +90,7 @@ class FuelRefinement:
         self._step = float(np.linalg.norm(problem.base_displacement)) / lattice.divisions
         self._tolerance = problem.tolerance
         self.edges_free = self.edges_refused = 0
+        self.nearest: tuple[int, Nearest] | None = None
         self._node_queries, self._queries_before = 0, prover.queries
 
     def counts(self) -> Counts:
@@ -154,13 +172,14 @@ class FuelRefinement:
         self.edges_free += int(np.count_nonzero(free))
         self.edges_refused += int(np.count_nonzero(~free))
         edges = np.flatnonzero(~free)
+        for k in edges[:1].tolist():
+            near = prover.nearest(k, offsets[k], offsets[k + 1], verdicts[k].time)
+            self.nearest = k, near
         return clearances, edges, np.array([verdicts[k].time for k in edges.tolist()])
 
 
-def best_refined(
-    refinement: FuelRefinement, starts: dict[str, Array]
-) -> tuple[str, RefinedOffsets] | None:
-    """The best of the descents from several starts, and the name of its start.
+def best_refined(refinement: FuelRefinement, starts: dict[str, Array]) -> BestRefined | None:
+    """The best of the descents from several starts.
 
     Args:
         refinement: the descents.
@@ -172,13 +191,14 @@ def best_refined(
     Raises:
         OutOfTime: at the deadline, if none was proven by then.
     """
-    best: tuple[str, RefinedOffsets] | None = None
+    best: BestRefined | None = None
     try:
         for name, offsets in starts.items():
             found = refinement.refined(offsets)
-            if found is not None and (best is None or found.change < best[1].change):
-                best = name, found
+            if found is not None and (best is None or found.change < best.path.change):
+                best = BestRefined(name, found, cut_short=False)
     except OutOfTime:
         if best is None:
             raise
+        return best._replace(cut_short=True)
     return best
