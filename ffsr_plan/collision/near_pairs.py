@@ -27,7 +27,7 @@ class PairGaps(NamedTuple):
     """Distances of p pairs as linear functions of the robot's displacement.
 
     Attributes:
-        distances: (p,) [m], negative in penetration.
+        distances: (p,) [m], negative in penetration, in ascending order.
         gradients: (p, 3) their change by a displacement of the whole robot, world axes.
     """
 
@@ -88,13 +88,15 @@ class NearPairs:
         bounds, shapes, rows = pairs_below(self._tree, self._kinds, frames, shift, limit)
         chosen = np.argsort(bounds, kind="stable")[:_MOST_PAIRS]
         distances, gradients = np.empty(len(chosen)), np.empty((len(chosen), 3))
+        rotations, positions = placed.rotations[place], placed.positions[place] + shift
         for k, pair in enumerate(chosen.tolist()):
             shape, row = int(shapes[pair]), int(rows[pair])
-            turned = placed.rotations[place, shape]
-            center = turned.T @ (spheres[row, :3] - placed.positions[place, shape] - shift)
+            turned = rotations[shape]
+            center = turned.T @ (spheres[row, :3] - positions[shape])
             distances[k], normal = self._measured(shape, float(spheres[row, 3]), center)
             gradients[k] = -turned @ normal
-        return PairGaps(distances, gradients)
+        order = np.argsort(distances, kind="stable")
+        return PairGaps(distances[order], gradients[order])
 
     def _measured(self, shape: int, radius: float, center: Array) -> tuple[float, Array]:
         """Distance of a shape and a ball at a place in its frame, and its gradient by the ball."""

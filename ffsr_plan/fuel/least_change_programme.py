@@ -6,7 +6,8 @@ With offsets x_i across the way, and the same step D along it on each layer, it 
 
 clearances c + g (x - x_0) >= floor at the stations. Each norm is replaced by the largest of its
 tangents, which are nowhere above it: in the plane those of the second differences are exact. The
-programme is solved again with tangents at its solution, until its value is that of the norms.
+programme begins with some tangents and the nearest clearances at each station. It is solved again
+with tangents at its solution and with the clearances missed there, until none is left.
 """
 
 from __future__ import annotations
@@ -16,11 +17,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, Flags, IntArray
 
-_DIRECTIONS = 12  # of tangents of a norm in two dimensions, at first
+_DIRECTIONS = 8  # of tangents of a norm in two dimensions, at first
 _SLOPES = (0.05, 0.15, 0.3, 0.6)  # of tangents of the speeds at the ends, at first
-_PRECISION, _MOST_SOLUTIONS = 1e-5, 6
+_NEAREST = 3  # clearances of each station, at first
+_PRECISION, _MISSED, _MOST_SOLUTIONS = 1e-4, 1e-9, 12  # relative; [m]
 _PENALTY = 30.0
 """Price of a missing clearance, in change of velocity: no path is worth more than it saves."""
 
@@ -32,11 +34,23 @@ class Cuts(NamedTuple):
         points: (C, 4) the control points that each depends on.
         slopes: (C, 4, axes) gradient by their offsets.
         values: (C,) clearance at the present offsets, less what is asked for [m].
+        stations: (C,) station that each belongs to, in ascending order; at one station the
+            clearances ascend too.
     """
 
     points: IntArray
     slopes: Array
     values: Array
+    stations: IntArray
+
+    def some(self, which: Flags) -> Cuts:
+        """Those (C,) that are true."""
+        return Cuts(*(each[which] for each in self))
+
+    def at(self, change: Array) -> Array:
+        """(C,) clearances, less what is asked for, after a change of the offsets (m + 1, axes)."""
+        moved: Array = self.values + np.sum(self.slopes * change[self.points], axis=(1, 2))
+        return moved
 
 
 class Programme:
@@ -83,13 +97,19 @@ class Programme:
         """
         self._tangents, best = list(self._basic), offsets
         self._add_tangents(offsets)
+        first = np.searchsorted(cuts.stations, cuts.stations)
+        active = np.arange(len(first)) < first + _NEAREST
         for _ in range(_MOST_SOLUTIONS):
-            solution = self._solve(offsets, cuts, radius)
+            solution = self._solve(offsets, cuts.some(active), radius)
             if solution is None:
                 return best
-            best, value = solution
-            if self.change(best) <= value + _PRECISION * self._step:
+            best, value, missing = solution
+            left = cuts.at(best - offsets) + missing[cuts.stations]
+            worst = _least_of_each(left, cuts.stations)
+            missed = worst[left[worst] < -_MISSED]
+            if not len(missed) and self.change(best) <= value * (1.0 + _PRECISION):
                 break
+            active[missed] = True
             self._add_tangents(best)
         return best
 
@@ -125,33 +145,46 @@ class Programme:
         )
         return coo_matrix((entries, places), (len(which), (m + 1) * (axes + 1))), -least
 
-    def _solve(self, offsets: Array, cuts: Cuts, radius: float) -> tuple[Array, float] | None:
-        """The best offsets (m + 1, axes), and the sum of norms by their tangents [m]."""
+    def _solve(
+        self, offsets: Array, cuts: Cuts, radius: float
+    ) -> tuple[Array, float, Array] | None:
+        """The best offsets (m + 1, axes), their change by tangents, and (S,) clearance missing."""
         from scipy.optimize import linprog
-        from scipy.sparse import bmat, coo_matrix, eye
+        from scipy.sparse import bmat, coo_matrix
 
         m, axes = self._divisions, len(self._rim)
         count, corners = len(cuts.values), (m + 1) * axes
+        stations = int(cuts.stations.max(initial=-1)) + 1
         columns = cuts.points[:, :, None] * axes + np.arange(axes)
         rows = np.broadcast_to(np.arange(count)[:, None, None], columns.shape)
         shape = count, corners + m + 1
         clear = coo_matrix((-cuts.slopes.ravel(), (rows.ravel(), columns.ravel())), shape)
-        at_present = np.sum(cuts.slopes * offsets[cuts.points], axis=(1, 2))
+        slack = coo_matrix(
+            (np.full(count, -1.0), (np.arange(count), cuts.stations)), (count, stations)
+        )
         tangents, most = self._rows_of_norms()
-        matrix = bmat([[tangents, None], [clear, -eye(count)]], format="csr")
-        bounds = np.concatenate([most, cuts.values - at_present])
+        matrix = bmat([[tangents, None], [clear, slack]] if count else [[tangents]], format="csr")
+        bounds = np.concatenate([most, cuts.at(-offsets)])
         low = np.maximum(offsets - radius, np.minimum(offsets, -self._rim))
         high = np.minimum(offsets + radius, np.maximum(offsets, self._rim))
         for end in (0, m):
             low[end] = high[end] = offsets[end]
-        free = [(0.0, None)] * (m + 1 + count)
-        limits = [*zip(low.ravel().tolist(), high.ravel().tolist(), strict=True), *free]
-        prices = np.concatenate([np.zeros(corners), np.ones(m + 1), np.full(count, _PENALTY)])
+        least = np.concatenate([low.ravel(), np.zeros(m + 1 + stations)])
+        greatest = np.concatenate([high.ravel(), np.full(m + 1 + stations, np.inf)])
+        prices = np.repeat([0.0, 1.0, _PENALTY], [corners, m + 1, stations])
+        limits = np.column_stack([least, greatest])
         found = linprog(prices, matrix, bounds, bounds=limits, method="highs-ds")
         if found.x is None:
             return None
-        value = float(found.x[corners : corners + m + 1].sum())
-        return found.x[:corners].reshape(m + 1, axes), value
+        norms, missing = np.split(found.x[corners:], [m + 1])
+        return found.x[:corners].reshape(m + 1, axes), float(norms.sum()), missing
+
+
+def _least_of_each(values: Array, groups: IntArray) -> IntArray:
+    """(g,) place of the least value (C,) of each group (C,), which are in ascending order."""
+    order = np.lexsort((values, groups))
+    firsts: IntArray = order[np.flatnonzero(np.diff(groups, prepend=-1))]
+    return firsts
 
 
 def _vectors(offsets: Array) -> Array:

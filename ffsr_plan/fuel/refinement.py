@@ -28,8 +28,11 @@ from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
 
 _ROUNDS, _LEAST_GAIN = 25, 1e-4  # of one descent; relative, over which it goes on
+_SAME = 1e-6  # relative: changes that differ by less are equal
 _PROOFS = 8  # how often a path is proven and corrected
-_STEPS_AT_ONCE = 2.0  # largest change of an offset in a round, in steps along the way
+_REACH, _SHRINKING, _LEAST_REACH = 1.0, 0.85, 0.2
+"""Largest change of an offset in a round, in steps along the way: at first, from round to round,
+and at least."""
 _SPARE = 3.0  # clearance asked for at stations, in the tolerance of proofs
 _GROWTH = 1.6  # of that where edges are refused at stations
 
@@ -130,16 +133,15 @@ class FuelRefinement:
         self, programme: Programme, offsets: Array, stations: Stations, spare: float
     ) -> Array:
         """Offsets (m + 1, axes) after rounds that end where little is gained."""
-        lattice, radius = self._lattice, _STEPS_AT_ONCE * self._step
+        lattice = self._lattice
         q = lattice.nominal.at(stations.edges, stations.times)
-        placed = shape_placements(lattice.problem.robot, q)
-        last = np.inf
-        for _ in range(_ROUNDS):
+        placed, last = shape_placements(lattice.problem.robot, q), np.inf
+        for k in range(_ROUNDS):
+            radius = max(_REACH * _SHRINKING**k, _LEAST_REACH) * self._step
             cuts = self._cuts(placed, stations, offsets, spare, radius)
             offsets = programme.best(offsets, cuts, radius)
-            missing = np.maximum(-(cuts.values), 0.0).sum()
-            value = programme.change(offsets) + missing
-            if value > last * (1.0 - _LEAST_GAIN):
+            value, clear = programme.change(offsets), np.all(cuts.values > -0.1 * spare)
+            if clear and abs(last - value) < _LEAST_GAIN * value:
                 break
             last = value
         return offsets
@@ -151,14 +153,15 @@ class FuelRefinement:
         directions = self._lattice.directions
         shifts = stations.displaced(offsets) @ directions
         limit = spare + radius * np.sqrt(len(directions))
-        points, slopes, values = [], [], []
+        points, slopes, values, of_station = [], [], [], []
         for k, shift in enumerate(shifts):
             gaps = self._pairs.at(placed, k, shift, limit)
             across = gaps.gradients @ directions.T
             points.append(np.tile(stations.points[k], (len(across), 1)))
             slopes.append(stations.shares[k][None, :, None] * across[:, None, :])
             values.append(gaps.distances - spare)
-        return Cuts(*map(np.concatenate, (points, slopes, values)))
+            of_station.append(np.full(len(across), k))
+        return Cuts(*map(np.concatenate, (points, slopes, values, of_station)))
 
     def _refused(self, offsets: Array) -> tuple[Array, IntArray, Array]:
         """Clearances (m + 1,) at the control points; edges not proven free, and times on them."""
@@ -195,7 +198,9 @@ def best_refined(refinement: FuelRefinement, starts: dict[str, Array]) -> BestRe
     try:
         for name, offsets in starts.items():
             found = refinement.refined(offsets)
-            if found is not None and (best is None or found.change < best.path.change):
+            if found is None:
+                continue
+            if best is None or found.change < best.path.change * (1.0 - _SAME):
                 best = BestRefined(name, found, cut_short=False)
     except OutOfTime:
         if best is None:
