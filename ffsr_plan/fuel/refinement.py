@@ -1,11 +1,11 @@
-"""Refinement of a path's lateral offsets to a small change of velocity, every edge proven free.
+"""Refinement of a path's lateral offsets to a small change of velocity, polygon and curve proven.
 
 Round by round the clearances at stations on the control polygon and on its curve are replaced by
 linear functions that are nowhere above them (`collision.near_pairs`), and the best offsets under
 these are taken (`least_change_programme`): where a path has been clear at all stations, it stays
 so, and its change of velocity falls. Offsets are lateral only: with layers free to move along the
-way too, a path could jump across an obstacle between two of them. Then the edges are proven free.
-Where one is refused, the place becomes another station.
+way too, a path could jump across an obstacle between two of them. Then the edges of the polygon
+and the pieces of the curve are proven free. Where one is refused, the place becomes a station.
 """
 
 from __future__ import annotations
@@ -19,8 +19,10 @@ from ffsr_plan.collision.near_pairs import NearPairs
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.errors import OutOfTime
+from ffsr_plan.curves.control_points import control_points_on
+from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.fuel.least_change_programme import Cuts, Programme
-from ffsr_plan.fuel.stations import Stations, on_polygon, usual_stations
+from ffsr_plan.fuel.stations import Stations, on_curve, on_polygon, usual_stations
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.proof.prover import Prover
@@ -38,7 +40,7 @@ _GROWTH = 1.6  # of that where edges are refused at stations
 
 
 class RefinedOffsets(NamedTuple):
-    """Offsets of control points, every edge between them proven free.
+    """Offsets of control points; the edges between them and their curve are proven free.
 
     Attributes:
         offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
@@ -94,11 +96,13 @@ class FuelRefinement:
         self._tolerance = problem.tolerance
         self.edges_free = self.edges_refused = 0
         self.nearest: tuple[int, Nearest] | None = None
-        self._node_queries, self._queries_before = 0, prover.queries
+        self._scene, self._node_queries, self._other_queries = scene, 0, 0
+        self._queries_before = prover.queries
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""
-        queries = self._prover.queries - self._queries_before - self._node_queries
+        queries = self._prover.queries - self._queries_before + self._other_queries
+        queries -= self._node_queries
         stations = self._node_queries + self._pairs.count
         return Counts(self.edges_free, self.edges_refused, stations, queries)
 
@@ -121,11 +125,11 @@ class FuelRefinement:
         for _ in range(_PROOFS):
             present = self._descended(programme, present, stations, spare)
             at = present @ lattice.directions
-            clearances, edges, times = self._refused(at)
-            if not len(edges):
+            clearances, refused = self._refused(at)
+            if not len(refused.edges):
                 change = lattice.divisions * programme.change(present)
                 return RefinedOffsets(frozen(at), frozen(clearances), change)
-            stations = stations.with_others(on_polygon(edges, times))
+            stations = stations.with_others(refused)
             spare *= _GROWTH
         return None
 
@@ -163,10 +167,24 @@ class FuelRefinement:
             of_station.append(np.full(len(across), k))
         return Cuts(*map(np.concatenate, (points, slopes, values, of_station)))
 
-    def _refused(self, offsets: Array) -> tuple[Array, IntArray, Array]:
-        """Clearances (m + 1,) at the control points; edges not proven free, and times on them."""
-        prover, m = self._prover, self._lattice.divisions
-        before, layers = prover.queries, np.arange(m + 1)
+    def _refused(self, offsets: Array) -> tuple[Array, Stations]:
+        """Clearances (m + 1,) at the control points, and where edges and pieces are refused."""
+        m, motion = self._lattice.divisions, self._lattice.nominal.displaced(offsets)
+        clearances, edges, times = self._proven(self._prover, offsets)
+        refused = on_polygon(edges, times)
+        if not len(edges):  # a polygon that is refused has to change anyway
+            control = control_points_on(motion, np.arange(m + 1.0))
+            curve = CurvedMotion(motion, control)
+            prover = Prover(curve, self._scene, self._tolerance, self._deadline)
+            _, pieces, times = self._proven(prover, np.zeros((m + 1, 3)))
+            self._other_queries += prover.queries
+            refused = refused.with_others(on_curve(m, pieces, times))
+        return clearances, refused
+
+    def _proven(self, prover: Prover, offsets: Array) -> tuple[Array, IntArray, Array]:
+        """Clearances (m + 1,) at the ends of edges; edges not proven free, and times on them."""
+        layers = np.arange(len(offsets))
+        before = prover.queries
         clearances = prover.clearances(layers, offsets)
         self._node_queries += prover.queries - before
         ends = np.column_stack([clearances[:-1], clearances[1:]])
