@@ -72,7 +72,7 @@ def least_change_path(roadmap: Roadmap) -> LeastChange:
                 best = best._replace(nodes=found.nodes, change=found.change)
     except OutOfTime:
         pass  # what has been proven is returned with its bound
-    return best._replace(bound=bound)
+    return best._replace(bound=min(bound, best.change))
 
 
 def _proven_nearby(roadmap: Roadmap, programme: PairProgramme) -> LeastChange:

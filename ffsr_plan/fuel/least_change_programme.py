@@ -22,7 +22,7 @@ from ffsr_plan.core.arrays import Array, Flags, IntArray
 _DIRECTIONS = 8  # of tangents of a norm in two dimensions, at first
 _SLOPES = (0.05, 0.15, 0.3, 0.6)  # of tangents of the speeds at the ends, at first
 _NEAREST = 3  # clearances of each station, at first
-_PRECISION, _MISSED, _MOST_SOLUTIONS = 1e-4, 1e-9, 12  # relative; [m]
+_PRECISION, _MISSED, _MOST_SOLUTIONS = 5e-4, 1e-9, 12  # relative; [m]
 _PENALTY = 30.0
 """Price of a missing clearance, in change of velocity: no path is worth more than it saves."""
 

@@ -53,7 +53,9 @@ def test_gradients_are_those_of_the_distance(seed):
     rng = np.random.default_rng(seed)
     q = robot.configuration(rng.uniform(-0.5, 0.5, 3), attitude=rng.uniform(-1.0, 1.0, 3))
     placed = shape_placements(robot, q[None])
-    pairs = NearPairs(robot, fp.Scene(rng.uniform(-1.0, 1.0, (1, 3)) + [[1.5, 0.0, 0.0]], [0.2]))
+    pairs = NearPairs(
+        robot, fp.Scene(rng.uniform((0.5, -1.0, -1.0), (2.5, 1.0, 1.0), (1, 3)), [0.2])
+    )
     first = pairs.at(placed, 0, np.zeros(3), 10.0)
     for axis in np.eye(3) * 1e-6:
         ahead, behind = (pairs.at(placed, 0, s * axis, 10.0).distances[0] for s in (1.0, -1.0))

@@ -50,7 +50,7 @@ def test_past_one_wall_in_the_plane_two_turns_at_most_are_made():
     found = programme.best(still, cuts_at([4], [[1.0]], [-1.0]), 10.0)
     assert found[4, 0] == pytest.approx(1.0, abs=1e-7)
     tent = np.interp(np.arange(9), [0, 4, 8], [0, 1, 0])[:, None]
-    assert programme.change(found) == pytest.approx(programme.change(tent), rel=1e-4)
+    assert programme.change(found) == pytest.approx(programme.change(tent), rel=5e-4)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -72,7 +72,7 @@ def test_in_space_it_agrees_with_a_general_solver(seed):
         minimize(change, rng.normal(size=10) * 0.1, constraints=walls, options={"maxiter": 500}).fun
         for _ in range(5)
     )
-    assert programme.change(found) <= best * (1.0 + 3e-4)
+    assert programme.change(found) <= best * (1.0 + 1e-3)
 
 
 def test_a_clearance_that_cannot_be_had_is_missed_by_as_little_as_possible():

@@ -149,16 +149,16 @@ def test_figures_that_cannot_be_are_refused(plan, change, message):
 def test_figures_belong_to_the_planner(problem, plan):
     data = plan.to_dict()
     del data["fuel"]
-    with pytest.raises(fp.InvalidInput, match="fuel.*figures of least-fuel"):
+    with pytest.raises(fp.InvalidInput, match=r"fuel.*figures of least-fuel"):
         fp.Plan.from_dict(data)
     other = fp.plan(problem, fp.LatticeOptimum()).to_dict()
     other["fuel"] = plan.to_dict()["fuel"]
-    with pytest.raises(fp.InvalidInput, match="fuel.*none with lattice-optimum"):
+    with pytest.raises(fp.InvalidInput, match=r"fuel.*none with lattice-optimum"):
         fp.Plan.from_dict(other)
 
 
 def test_the_margin_is_that_of_start_and_goal_at_most(problem):
-    with pytest.raises(fp.InvalidInput, match="margin.*clearance of the start"):
+    with pytest.raises(fp.InvalidInput, match=r"margin.*clearance of the start"):
         fp.plan(problem, fp.LeastFuel(margin=5.0))
 
 
@@ -193,7 +193,7 @@ def test_what_it_cannot_do_is_refused_by_name(problem, plan):
     refused(problem, "colonies", colonies=2)
     with pytest.raises(fp.InvalidInput, match="a plan of another planner"):
         fp.refine(plan)
-    with pytest.raises(fp.InvalidInput, match="layers and spacing.*larger spacing"):
+    with pytest.raises(fp.InvalidInput, match=r"layers and spacing.*larger spacing"):
         fp.plan(problem, fp.LeastFuel(spacing=1e-5))
 
 
