@@ -45,7 +45,8 @@ class Cuts(NamedTuple):
 
     def some(self, which: Flags) -> Cuts:
         """Those (C,) that are true."""
-        return Cuts(*(each[which] for each in self))
+        points, slopes, values, stations = self
+        return Cuts(points[which], slopes[which], values[which], stations[which])
 
     def at(self, change: Array) -> Array:
         """(C,) clearances, less what is asked for, after a change of the offsets (m + 1, axes)."""
