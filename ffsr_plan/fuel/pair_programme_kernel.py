@@ -108,35 +108,28 @@ def extend_pairs(
         The least cost that a path through a state left out can have [m]; infinite without one.
     """
     tails, nodes, heads = allowed
-    left = len(status) - layer
-    beyond = _NOTHING
+    left, beyond = len(status) - layer, _NOTHING
     chosen, found = np.empty(len(tails), np.int64), np.empty(len(tails))
     for k in nodes:
-        count, mean0, mean1 = (
-            0,
-            (at[origin, 0] - at[k, 0]) / left,
-            (at[origin, 1] - at[k, 1]) / left,
-        )
+        count = 0
+        w0, w1 = (at[origin, 0] - at[k, 0]) / left, (at[origin, 1] - at[k, 1]) / left
         for j in tails:
-            if costs[k, j] == _NOTHING:
-                continue
             v0, v1 = at[k, 0] - at[j, 0], at[k, 1] - at[j, 1]
-            whole = costs[k, j] + change_left(step, v0, v1, mean0, mean1)
-            if whole > limit:
+            whole = costs[k, j] + change_left(step, v0, v1, w0, w1)
+            if whole <= limit and whole < _NOTHING:
+                chosen[count], found[count] = j, costs[k, j]
+                count += 1
+            else:
                 beyond = min(beyond, whole)
-                continue
-            chosen[count], found[count] = j, costs[k, j]
-            count += 1
-        if count == 0:
-            for head in heads:
-                onward[head, k] = _NOTHING
-            continue
-        order = np.argsort(found[:count])
-        before, so_far = chosen[order], found[order]
-        least = pairs_from(
-            layer, at, step, origin, k, heads, before, so_far, status, limit, onward, back
-        )
-        beyond = min(beyond, least)
+        for head in heads:
+            onward[head, k] = _NOTHING
+        if count > 0:
+            order = np.argsort(found[:count])
+            pairs = chosen[order], found[order]
+            least = pairs_from(
+                layer, at, step, origin, k, heads, pairs, status, limit, onward, back
+            )
+            beyond = min(beyond, least)
     return beyond
 
 
@@ -148,8 +141,7 @@ def pairs_from(
     origin: int,
     k: int,
     heads: IntArray,
-    before: IntArray,
-    so_far: Array,
+    pairs: tuple[IntArray, Array],
     status: States,
     limit: float,
     onward: Array,
@@ -164,20 +156,18 @@ def pairs_from(
         origin: node of layer m.
         k: node of layer i.
         heads: nodes of layer i + 1 that are allowed.
-        before: (c,) nodes of layer i - 1, c >= 1.
-        so_far: (c,) costs of the states (k, before) in ascending order [m].
+        pairs: (c,) nodes of layer i - 1, c >= 1, and (c,) costs of their states [m], ascending.
         status: (m, n, n) states of edges.
         limit: cost of a whole path above which it is of no interest [m].
-        onward: (n, n) of node on layer i + 1 and node on layer i [m], updated.
+        onward: (n, n) of node on layer i + 1 and node on layer i [m], infinite; updated.
         back: (m, n, n), updated.
 
     Returns:
         The least cost that a path through a state left out can have [m].
     """
-    left, beyond = len(status) - layer - 1, _NOTHING
+    left, beyond, (before, so_far) = len(status) - layer - 1, _NOTHING, pairs
     x, y = at[before, 0] - 2.0 * at[k, 0], at[before, 1] - 2.0 * at[k, 1]
     for head in heads:
-        onward[head, k] = _NOTHING
         if status[layer, k, head] == REFUSED:
             continue
         a, b = at[head, 0], at[head, 1]
