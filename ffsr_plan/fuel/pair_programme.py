@@ -87,8 +87,8 @@ class PairProgramme:
             limit: [m].
 
         Returns:
-            The best path, if its change is within the limit. A path that is not may be another
-            than the best.
+            The best path, if its change is within the limit: with one step left the bound is
+            exact, so that no other is left.
 
         Raises:
             OutOfTime: at the deadline.
@@ -145,9 +145,8 @@ class PairProgramme:
         while True:
             limit = min(upper, base + rise)
             found = self.within(allowed, status, limit)
-            if found.change <= limit * _ROUNDING or found.beyond == math.inf:
+            if found.nodes is not None or found.beyond == math.inf:
                 return found
-            upper = min(upper, found.change)
             base, rise = max(base, min(found.beyond, upper)), _GROWTH * rise
 
     def improved(self, path: IntArray, allowed: Flags, status: States) -> BestPath:

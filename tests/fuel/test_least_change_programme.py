@@ -60,7 +60,7 @@ def test_in_space_it_agrees_with_a_general_solver(seed):
     slopes = rng.normal(size=(5, 2))
     slopes /= np.linalg.norm(slopes, axis=1)[:, None]
     values = rng.uniform(-0.6, 0.2, 5)
-    programme = Programme(6, 1.0, np.full(2, 9.0))
+    programme = Programme(6, 0.3, np.full(2, 9.0))
     found = programme.best(np.zeros((7, 2)), cuts_at(points, slopes, values), 9.0)
     assert np.all(values + np.sum(slopes * found[points], axis=1) >= -1e-7)
 

@@ -9,6 +9,7 @@ import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.curves.control_points import control_points_on
 from ffsr_plan.curves.curved_motion import CurvedMotion
+from ffsr_plan.scene.generators import scatter
 from ffsr_plan.search.fuel_figures import velocity_change
 from tests.helpers.urdf_builders import random_scene
 
@@ -51,6 +52,15 @@ def test_the_margin_is_kept_along_polygon_and_curve(plan):
     assert min(least_sampled(plan)) > plan.fuel.margin
     assert plan.certificate.least_clearance >= plan.fuel.margin
     assert plan.verify().ok
+
+
+def test_the_curve_is_proven_where_its_stations_miss_an_obstacle(problem):
+    """A scene whose curve is too close between its knots and the middles of its pieces."""
+    scene = scatter(1025, (4, 11), (1.8, -3.0), (8.2, 3.0), (0.15, 0.5))
+    crowded = replace(problem, scene=scene, lattice=fp.Lattice(40, fp.Axis(20, 0.15)))
+    plan = fp.plan(crowded, fp.LeastFuel(margin=0.02))
+    assert min(least_sampled(plan)) > 0.02
+    assert plan.smooth().kind == "spline"
 
 
 @pytest.mark.parametrize("margin", [0.0, 0.05, 0.2])
