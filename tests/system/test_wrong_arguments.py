@@ -59,6 +59,7 @@ def calls(plan, tmp_path_factory):
         fp.PostureTarget: {"towards": "stowed", "levels": 2},
         fp.PostureAxis.towards: {"posture": "stowed", "levels": 2},
         fp.AntSystem: vars(fp.AntSystem()),
+        fp.LeastFuel: vars(fp.LeastFuel(spacing=0.1)),
         fp.MaxMinAntSystem: vars(fp.MaxMinAntSystem()),
         fp.PostureAnnealing: vars(fp.PostureAnnealing()),
         fp.TreePlanner: vars(fp.TreePlanner()),
@@ -187,7 +188,7 @@ def test_the_interface_is_covered(calls):
     """Every public function, and every public class that users make, is among the calls."""
     made_by_the_package = {
         "Branches", "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof",
-        "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement",
+        "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement",
         "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
