@@ -188,8 +188,8 @@ def test_the_interface_is_covered(calls):
     """Every public function, and every public class that users make, is among the calls."""
     made_by_the_package = {
         "Branches", "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof",
-        "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement",
-        "Report", "ArmReach", "JointBeyond",
+        "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan",
+        "Replacement", "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
         "SearchResult", "Solution", "SpaceRobot",
