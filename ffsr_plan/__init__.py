@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from ffsr_plan.dynamics.inverse_dynamics import States
     from ffsr_plan.dynamics.motion import Motion
     from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
+    from ffsr_plan.fuel.least_fuel_planner import LeastFuel
     from ffsr_plan.goal_poses.inverse_kinematics import inverse_kinematics
     from ffsr_plan.goal_poses.pose_out_of_reach import (
         ArmReach,
@@ -80,6 +81,7 @@ if TYPE_CHECKING:
     from ffsr_plan.scene.scene import Scene
     from ffsr_plan.search.ants.ant_system import AntSystem
     from ffsr_plan.search.ants.max_min import MaxMinAntSystem
+    from ffsr_plan.search.fuel_figures import FuelFigures
     from ffsr_plan.search.optimum_planner import LatticeOptimum
     from ffsr_plan.search.postures.posture_annealing import PostureAnnealing
     from ffsr_plan.search.records import (
@@ -114,6 +116,7 @@ __all__ = [
     "Cycle",
     "EdgeProof",
     "FfsrPlanError",
+    "FuelFigures",
     "GoalInCollision",
     "GoalPoseIgnored",
     "HeldBase",
@@ -125,6 +128,7 @@ __all__ = [
     "Lattice",
     "LatticeOptimum",
     "LayeredLattice",
+    "LeastFuel",
     "LiveView",
     "MaxMinAntSystem",
     "Mode",
@@ -219,6 +223,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "dynamics.inverse_dynamics": ("States",),
     "dynamics.motion": ("Motion",),
     "dynamics.wheel_momentum": ("WheelMomentum",),
+    "fuel.least_fuel_planner": ("LeastFuel",),
     "goal_poses.inverse_kinematics": ("inverse_kinematics",),
     "goal_poses.pose_out_of_reach": ("ArmReach", "HeldBase", "JointBeyond", "PoseOutOfReach"),
     "lattice.certificate": ("Certificate", "Counts"),
@@ -248,6 +253,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "scene.scene": ("Scene",),
     "search.ants.ant_system": ("AntSystem",),
     "search.ants.max_min": ("MaxMinAntSystem",),
+    "search.fuel_figures": ("FuelFigures",),
     "search.optimum_planner": ("LatticeOptimum",),
     "search.postures.posture_annealing": ("PostureAnnealing",),
     "search.records": (

@@ -124,10 +124,13 @@ def refine(plan: Plan) -> Plan:
         plan: a plan on a lattice without posture axes.
 
     Raises:
-        InvalidInput: not a plan, or one on a lattice with posture axes.
+        InvalidInput: not a plan, or one on a lattice with posture axes, or by `LeastFuel`.
     """
     if not isinstance(plan, Plan):
         raise InvalidInput("plan", plan, "a Plan")
+    if plan.fuel is not None:
+        allowed = "a plan of another planner: refinement lowers F, and takes more fuel"
+        raise InvalidInput("plan", f"a plan by {plan.planner.name}", allowed)
     lattice = plan.problem.lattice
     if lattice is None or plan.lattice is None or lattice.postures:
         raise InvalidInput("plan", lattice, "a plan on a lattice without posture axes")

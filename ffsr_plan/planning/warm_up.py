@@ -11,6 +11,7 @@ from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.kernels.compiling_time import Stopwatch
+from ffsr_plan.fuel.least_fuel_planner import LeastFuel
 from ffsr_plan.planning.plan_and_refine import plan
 from ffsr_plan.plans.planner_registry import Planner
 from ffsr_plan.problem.lattice_settings import Axis, Lattice
@@ -69,6 +70,7 @@ def _cases() -> Iterator[tuple[Problem, Planner]]:
     yield _across("point", few), MaxMinAntSystem(ants=2, cycles=2)
     yield _across("point", many), AntSystem(ants=2, cycles=2)
     yield _across("satellite_ur5", few), LatticeOptimum()
+    yield _across("planar_dual_arm", few), LeastFuel()
     with_lattice = _across("planar_dual_arm", few)
     without = replace(with_lattice, lattice=None)
     yield without, TreePlanner(checks=100_000)

@@ -22,6 +22,7 @@ from ffsr_plan.problem.objective import motion_objective
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.refinement.edge_clearances import EdgeClearances
+from ffsr_plan.search.fuel_figures import FuelFigures
 from ffsr_plan.search.records import Branches, History, Trails
 
 
@@ -57,6 +58,7 @@ class PlanData:
         certificate: edges proven, Coal queries spent, proven clearance along the whole motion.
         interrupted: whether Ctrl-C or the time limit ended the search early.
         seconds: computing time [s], without that for compiling kernels at their first use.
+        fuel: change of velocity that the motion needs, of plans by `LeastFuel`; None of others.
     """
 
     problem: Problem
@@ -76,6 +78,7 @@ class PlanData:
     certificate: Certificate
     interrupted: bool
     seconds: float
+    fuel: FuelFigures | None = None
 
     @cached_property
     def configurations(self) -> Array:

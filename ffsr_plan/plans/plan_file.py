@@ -74,6 +74,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
         },
         "interrupted": plan.interrupted,
         "seconds": plan.seconds,
+        **({} if plan.fuel is None else {"fuel": plan.fuel._asdict()}),
     }
 
 

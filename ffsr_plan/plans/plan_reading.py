@@ -15,6 +15,7 @@ from ffsr_plan.core.settings import UnknownKey, from_mapping
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.plans.fuel_reading import fuel_of
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_tables import PlanTable, ProblemTable, RobotTable
 from ffsr_plan.plans.robot_table import robot_table
@@ -76,6 +77,7 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
         ),
         interrupted=table.interrupted,
         seconds=table.seconds,
+        fuel=fuel_of(what, table, problem),
     )  # fmt: skip
 
 

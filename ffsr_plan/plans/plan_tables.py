@@ -236,6 +236,18 @@ class CertificateTable:
 
 
 @settings
+class FuelTable:
+    """Change of velocity of a plan by `LeastFuel`."""
+
+    change: Annotated[float, Number(at_least=0.0)]
+    straight: Annotated[float, Number(at_least=0.0)]
+    lattice_change: Annotated[float, Number(at_least=0.0)] | None
+    lattice_bound: Annotated[float, Number(at_least=0.0)] | None
+    margin: Annotated[float, Number(at_least=0.0)]
+    start: Annotated[str, Text()]
+
+
+@settings
 class PlanTable:
     """A whole plan file, without its digest."""
 
@@ -258,3 +270,4 @@ class PlanTable:
     interrupted: Annotated[bool, Truth()]
     seconds: Annotated[float, Number(at_least=0.0)]
     branches: BranchesTable | None = None
+    fuel: FuelTable | None = None

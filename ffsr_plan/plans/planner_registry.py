@@ -7,6 +7,7 @@ from typing import Any
 
 from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.fuel.least_fuel_planner import LeastFuel
 from ffsr_plan.portfolio.lattice_planners import (
     LATTICE_PLANNERS,
     OnLattice,
@@ -17,9 +18,10 @@ from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.tree_search.tree_planner import TreePlanner
 
-Planner = OnLattice | TreePlanner | Portfolio
+Planner = OnLattice | LeastFuel | TreePlanner | Portfolio
 PLANNERS: dict[str, type[Planner]] = {
     **LATTICE_PLANNERS,
+    LeastFuel.name: LeastFuel,
     TreePlanner.name: TreePlanner,
     Portfolio.name: Portfolio,
 }

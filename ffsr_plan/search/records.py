@@ -11,6 +11,7 @@ from ffsr_plan.core.arrays import Array, IntArray, equal_by_content, frozen
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
+from ffsr_plan.search.fuel_figures import FuelFigures
 from ffsr_plan.time_limit.deadline import Deadline
 
 
@@ -244,6 +245,7 @@ class Solution(NamedTuple):
         trails: the edges that ants walked; without a lattice, those of the trees.
         certificate: what was proven.
         interrupted: whether Ctrl-C or the time limit ended the search early.
+        fuel: change of velocity, of a planner that looks for little of it; else None.
     """
 
     lattice: LayeredLattice | None
@@ -259,3 +261,4 @@ class Solution(NamedTuple):
     trails: Trails | Branches
     certificate: Certificate
     interrupted: bool
+    fuel: FuelFigures | None = None

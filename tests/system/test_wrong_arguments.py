@@ -59,6 +59,7 @@ def calls(plan, tmp_path_factory):
         fp.PostureTarget: {"towards": "stowed", "levels": 2},
         fp.PostureAxis.towards: {"posture": "stowed", "levels": 2},
         fp.AntSystem: vars(fp.AntSystem()),
+        fp.LeastFuel: vars(fp.LeastFuel(spacing=0.1)),
         fp.MaxMinAntSystem: vars(fp.MaxMinAntSystem()),
         fp.PostureAnnealing: vars(fp.PostureAnnealing()),
         fp.TreePlanner: vars(fp.TreePlanner()),
@@ -186,12 +187,13 @@ def test_wrong_arguments_are_refused_by_errors_of_the_package(calls, tmp_path, m
 def test_the_interface_is_covered(calls):
     """Every public function, and every public class that users make, is among the calls."""
     made_by_the_package = {
-        "Branches", "Certificate", "Clearance", "Components", "Counts", "Cycle", "EdgeProof",
-        "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan", "Replacement",
-        "Report", "ArmReach", "JointBeyond",
+        "Branches", "Certificate", "Clearance", "Components", "Counts", "CurvePoints", "CurvedMotion",
+        "Cycle", "EdgeProof",
+        "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan",
+        "Replacement", "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
-        "SearchResult", "Solution", "SpaceRobot",
+        "SearchResult", "SmoothCurve", "SmoothPlan", "Solution", "SpaceRobot",
         "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum",
     }  # fmt: skip
     without_arguments = {"arm_names", "robot_names", "robot_summaries", "warm_up"}  # or callbacks

@@ -1,0 +1,108 @@
+"""Pairs of a shape and an obstacle that are near each other, with the gradients of their distances.
+
+The distance of two convex bodies is a convex function of the displacement of one of them, depths of
+penetration counted as negative. So the linear function with its value and gradient at one place is
+nowhere above it: where that is positive, the bodies are apart.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import coal
+import numpy as np
+
+from ffsr_plan.collision.nearest_sphere_kernels import pairs_below
+from ffsr_plan.collision.shape_placements import Placements
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.robots.collision_shapes import sharpen
+from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.scene.scene import Scene
+from ffsr_plan.time_limit.deadline import Deadline
+
+_MOST_PAIRS = 400  # of one placement, the nearest ones
+
+
+class PairGaps(NamedTuple):
+    """Distances of p pairs as linear functions of the robot's displacement.
+
+    Attributes:
+        distances: (p,) [m], negative in penetration, in ascending order.
+        gradients: (p, 3) their change by a displacement of the whole robot, world axes.
+    """
+
+    distances: Array
+    gradients: Array
+
+
+class NearPairs:
+    """Near pairs of the links of a robot and the spheres of a scene.
+
+    It contains scratch data: every thread needs its own.
+
+    Attributes:
+        count: number of placements that were looked at.
+    """
+
+    def __init__(self, robot: SpaceRobot, scene: Scene, deadline: Deadline | None = None) -> None:
+        """Prepare the measurements.
+
+        Args:
+            robot: the robot.
+            scene: the obstacles.
+            deadline: after which measurements raise `OutOfTime`.
+        """
+        self._deadline, self._tree, self._kinds = (
+            deadline or Deadline(),
+            scene.tree,
+            robot.primitives.kinds,
+        )
+        self._empty = len(scene) == 0 or len(self._kinds) == 0
+        self._ball, self._request = coal.Sphere(1.0), coal.DistanceRequest()
+        sharpen(self._request)
+        self._result = coal.DistanceResult()
+        self._frames = coal.Transform3s.Identity(), coal.Transform3s.Identity()
+        self._measures = [
+            coal.ComputeDistance(shape.geometry, self._ball)
+            for shape in robot.collision_model.geometryObjects
+        ]
+        self.count = 0
+
+    def at(self, placed: Placements, place: int, shift: Array, limit: float) -> PairGaps:
+        """The pairs of one placement that may be nearer to each other than a limit.
+
+        Args:
+            placed: K placements of the shapes.
+            place: which of the K.
+            shift: (3,) displacement of the whole robot [m].
+            limit: [m].
+
+        Raises:
+            OutOfTime: at the deadline.
+        """
+        self._deadline.check()
+        if self._empty:
+            return PairGaps(np.zeros(0), np.zeros((0, 3)))
+        self.count += 1
+        frames, spheres = placed.frames[place], self._tree.spheres
+        bounds, shapes, rows = pairs_below(self._tree, self._kinds, frames, shift, limit)
+        chosen = np.argsort(bounds, kind="stable")[:_MOST_PAIRS]
+        distances, gradients = np.empty(len(chosen)), np.empty((len(chosen), 3))
+        rotations, positions = placed.rotations[place], placed.positions[place] + shift
+        for k, pair in enumerate(chosen.tolist()):
+            shape, row = int(shapes[pair]), int(rows[pair])
+            turned = rotations[shape]
+            center = turned.T @ (spheres[row, :3] - positions[shape])
+            distances[k], normal = self._measured(shape, float(spheres[row, 3]), center)
+            gradients[k] = -turned @ normal
+        order = np.argsort(distances, kind="stable")
+        return PairGaps(distances[order], gradients[order])
+
+    def _measured(self, shape: int, radius: float, center: Array) -> tuple[float, Array]:
+        """Distance of a shape and a ball at a place in its frame, and its gradient by the ball."""
+        shape_frame, ball_frame = self._frames
+        self._ball.radius = radius
+        ball_frame.setTranslation(center)
+        self._result.clear()
+        distance = self._measures[shape](shape_frame, ball_frame, self._request, self._result)
+        return float(distance), np.asarray(self._result.normal)
