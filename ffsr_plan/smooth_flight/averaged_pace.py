@@ -23,7 +23,7 @@ from ffsr_plan.trajectory.flight_limits import FlightLimits
 
 _WITHIN = np.linspace(0.0, 1.0, 5)  # where a piece is sampled; as many as quarter steps have ends
 _MARGIN = 1e-3  # relative, for peaks between samples beyond those that second differences show
-_PEAK = 1.5 / 8.0  # of a second difference
+_PEAK = 0.55  # of a second difference: a kink, where a piece of the curve ends, exceeds by a half
 _SHORTEST = 1e-9  # share of the duration below which a piece is a rounding error
 _WIDTHS = 1e-3, 1.0  # shares of a law's duration between which w is looked for
 
