@@ -62,7 +62,9 @@ def test_limits_asked_for_thrice_a_step_hold_in_between_and_the_rest_costs_littl
     samples = curve_samples(curve)
     wanted = demands(limits, samples.path, samples.dynamics, curve.robot.mass)
     squares, _ = squares_of(step_limits(samples, wanted), 0.0, 0.0)
-    assert np.max(Search(samples, wanted).excess(squares)) < 1.03  # 1.3 where asked for at one end
+    assert (
+        np.max(Search(samples, wanted).excess(squares)) < 1.03
+    )  # 2 to 3 where asked for at one end
     fastest = Search(samples, wanted).fastest()
     assert np.max(Search(samples, wanted).excess(fastest)) < 1.0 + 1e-9
     assert duration_of(samples.ends, fastest) < 1.003 * duration_of(samples.ends, squares)

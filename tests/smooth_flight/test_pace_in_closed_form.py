@@ -66,7 +66,7 @@ def test_end_speeds_are_met_and_save_time(line):
 @pytest.mark.parametrize("ends", [EndSpeeds(1.0, 0.0), EndSpeeds(0.0, 1.0)])
 def test_end_speeds_that_cannot_be_are_refused(line, ends):
     curve = curve_of(line)
-    with pytest.raises(InvalidInput, match="_speed.*at most"):
+    with pytest.raises(InvalidInput, match=r"_speed.*at most"):
         pace_within(curve, limits_of(curve, thruster_acceleration=PUSH), ends=ends)
     with pytest.raises(InvalidInput, match="zero with a limit on jerk or with a duration"):
         pace_within(curve, limits_of(curve, thruster_acceleration=PUSH), 1e4, ends)
