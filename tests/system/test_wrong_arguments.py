@@ -191,7 +191,7 @@ def test_the_interface_is_covered(calls):
         "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
-        "SearchResult", "Solution", "SpaceRobot",
+        "SearchResult", "SmoothFlight", "Solution", "SpaceRobot",
         "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum",
     }  # fmt: skip
     without_arguments = {"arm_names", "robot_names", "robot_summaries", "warm_up"}  # or callbacks
