@@ -47,14 +47,14 @@ class FlightFigures(NamedTuple):
 
 def flight_figures(flight: TimedPlan) -> FlightFigures:
     """The figures of a timed plan."""
-    robot = flight.motion.robot
+    robot = flight.robot
     times = np.linspace(0.0, flight.duration, _PEAK_SAMPLES)
     states = flight.at(times)
     mass = sum(body.mass for body in list(robot.model.inertias)[1:])
     thrust = states.thrust + mass * flight.pulse_accelerations(times)
     loads = np.max(np.abs(states.torques), axis=0).tolist()
     named = list(zip(robot.joint_names, loads, robot.prismatic, strict=True))
-    count, wheels = len(flight.pulses), flight.motion.mode.has_wheels
+    count, wheels = len(flight.pulses), flight.mode.has_wheels
     return FlightFigures(
         duration=flight.duration,
         rests=len(flight.rests),

@@ -9,6 +9,8 @@ import numpy as np
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.trajectory.cubic_pieces import evaluate
 
+_HALVINGS = 60  # of a piece, to the last digit of a time
+
 
 class Pace(NamedTuple):
     """The curve parameter s(t), a cubic polynomial on each of K pieces.
@@ -34,6 +36,16 @@ class Pace(NamedTuple):
     def on(self, piece: IntArray, times: Array) -> tuple[Array, Array, Array]:
         """(N,) each: s, s' and s'' at times (N,) on given pieces (N,)."""
         return evaluate(self.begin[piece], times - self.times[piece])
+
+    def times_at(self, s: Array) -> Array:
+        """(N,) times [s] at which the law is at parameters (N,), between those of its ends."""
+        piece = np.searchsorted(self.begin[:, 0], s, side="right") - 1
+        low, high = self.times[piece], self.times[piece + 1]
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2.0
+            passed = self.on(piece, middle)[0] > s
+            low, high = np.where(passed, low, middle), np.where(passed, middle, high)
+        return low
 
     def slowed(self, factor: float) -> Pace:
         """The law with all durations multiplied by a factor."""

@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.checks import finite_array
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.inverse_dynamics import States, states_along
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.smooth_flight.curve_samples import Curve, dynamics_at
 from ffsr_plan.smooth_flight.pace import Pace
-from ffsr_plan.smooth_flight.timed_curve import pace_within
+from ffsr_plan.smooth_flight.timed_curve import SMALLEST_RATE, pace_within
 from ffsr_plan.trajectory.flight import Flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 
@@ -65,6 +66,31 @@ class SmoothFlight(Flight):
         return self._pace.duration
 
     @property
+    def rests(self) -> Array:
+        """(k,) times at which the robot rests on its way [s], where the curve has such places."""
+        return _rests(self.curve, self._pace)
+
+    @property
+    def pulse_times(self) -> Array:
+        """(0,) as in `TimedPlan`: a smooth flight has no pulses."""
+        return np.zeros(0)
+
+    @property
+    def pulse_durations(self) -> Array:
+        """(0,) as in `TimedPlan`."""
+        return np.zeros(0)
+
+    @property
+    def pulses(self) -> Array:
+        """(0, 3) as in `TimedPlan`."""
+        return np.zeros((0, 3))
+
+    @property
+    def corner_cut(self) -> float:
+        """0, as in `TimedPlan`: the robot is on the curve at all times [m]."""
+        return 0.0
+
+    @property
     def switch_times(self) -> Array:
         """(K + 1,) times between which acceleration and jerk do not jump [s].
 
@@ -88,6 +114,14 @@ class SmoothFlight(Flight):
         """
         instants = self._instants(times)
         return _states(self.curve, self._pace, instants)
+
+    def pulse_accelerations(self, times: ArrayLike) -> Array:
+        """(N, 3) zeros at times (N,), as in `TimedPlan` between its pulses [m/s^2].
+
+        Raises:
+            InvalidInput: times that are not finite numbers.
+        """
+        return np.zeros((len(finite_array("times", times, (-1,))), 3))
 
     def speeds(self, times: ArrayLike) -> tuple[Array, Array, Array]:
         """The curve's parameter s, from 0 to the number of pieces, and its derivatives by time.
@@ -132,6 +166,16 @@ def _states(curve: Curve, pace: Pace, times: Array) -> States:
     s = np.clip(s, 0.0, curve.pieces)
     path, dynamics = dynamics_at(curve, s)
     return states_along(path, dynamics, s / curve.pieces, speed, acceleration)
+
+
+def _rests(curve: Curve, pace: Pace) -> Array:
+    """(k,) times [s] of the ends of pieces at which nothing moves with s."""
+    inner = np.arange(1.0, curve.pieces)
+    if len(inner) == 0:
+        return inner
+    path = curve.at(inner)
+    rates = np.hstack([path.base[:, 0], path.turn[:, 0], path.rates[:, 0]])
+    return pace.times_at(inner[np.max(np.abs(rates), axis=1) <= SMALLEST_RATE])
 
 
 def _delta_v(curve: Curve, pace: Pace) -> float:

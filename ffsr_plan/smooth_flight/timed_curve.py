@@ -15,7 +15,8 @@ from ffsr_plan.smooth_flight.pace import Pace, pace_of
 from ffsr_plan.smooth_flight.pace_search import EndSpeeds, Search
 from ffsr_plan.trajectory.flight_limits import FlightLimits, check_limits
 
-_SMALLEST_RATE = 1e-12  # [m or rad per unit of s] below which something counts as at rest
+SMALLEST_RATE = 1e-12
+"""Rate [m or rad per unit of s] below which something counts as at rest."""
 _SAME = 1e-4  # relative tolerance of the duration before a law is slowed down to it
 _ROUNDING = 1e-9
 
@@ -97,4 +98,4 @@ def _moving(samples: CurveSamples) -> Flags:
     path = samples.path
     norms: list[Array] = [np.linalg.norm(each[:, 0], axis=1) for each in (path.base, path.turn)]
     rates = np.column_stack([*norms, np.abs(path.rates[:, 0])])
-    return np.asarray(np.max(rates, axis=0) > _SMALLEST_RATE)
+    return np.asarray(np.max(rates, axis=0) > SMALLEST_RATE)

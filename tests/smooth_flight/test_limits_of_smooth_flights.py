@@ -107,7 +107,10 @@ def test_a_curve_that_rests_on_its_way_is_flown_within_the_limits():
     limits = limits_of(curve, **BY_MODE["free-flying"])
     flight = smooth_flight(curve, limits)
     assert max(shares_in_use(flight, limits, instants(flight)).values()) <= 1.0 + 1e-9
+    assert len(flight.rests) == 2
+    assert np.abs(flight.at(flight.rests).velocities).max() < 1e-6
     straight = smooth_flight(curve_of(motion), limits)
+    assert len(straight.rests) == 0
     assert straight.duration < flight.duration < 3.0 * straight.duration
 
 

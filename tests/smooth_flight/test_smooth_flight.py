@@ -103,6 +103,13 @@ def test_times_outside_the_flight_are_refused():
             flight.speeds(times)
 
 
+def test_it_has_no_pulses():
+    flight = flown(bent_motion(1, "free-flying"), **BY_MODE["free-flying"])
+    assert flight.pulses.shape == (0, 3)
+    assert len(flight.pulse_times) == len(flight.pulse_durations) == flight.corner_cut == 0
+    assert np.array_equal(flight.pulse_accelerations([0.0, 1.0]), np.zeros((2, 3)))
+
+
 def test_a_flight_says_what_it_is():
     flight = flown(bent_motion(1, "free-flying"), **BY_MODE["free-flying"])
     assert repr(flight).startswith(f"SmoothFlight({flight.duration:.4g} s, delta-v")
