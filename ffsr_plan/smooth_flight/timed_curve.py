@@ -19,6 +19,7 @@ SMALLEST_RATE = 1e-12
 """Rate [m or rad per unit of s] below which something counts as at rest."""
 _SAME = 1e-4  # relative tolerance of the duration before a law is slowed down to it
 _ROUNDING = 1e-9
+_LONGEST = 1e9  # [s] beyond which the squares of speeds come close to the least numbers
 
 
 def pace_within(
@@ -87,7 +88,7 @@ def _with_jerk(jerks: JerkLimits, search: Search, fastest: Pace, duration: float
 
 def _check_duration(duration: float, shortest: float) -> None:
     """Raise `InvalidInput` for a duration in which the curve cannot be flown."""
-    number("duration", duration, above=0.0)
+    number("duration", duration, above=0.0, at_most=_LONGEST)
     if duration < shortest * (1.0 - _ROUNDING):
         allowed = f"at least {shortest:.6g} s, the fastest flight within these limits"
         raise InvalidInput("duration", duration, allowed)
