@@ -52,19 +52,16 @@ class Plan(PlanData):
         """The plan flown within limits, from rest at the start to rest at the goal.
 
         The flight follows the proven smooth curve of `smooth`, or with `corners="rest"` exactly the
-        proven path, with a rest at every corner, where a velocity would have to change at once.
-        A quantity without a value is not limited; `joint_velocity`, and where the URDF has such
-        limits `joint_acceleration` and `joint_jerk`, default to the URDF's. Limits for joints are
-        one number for all, or numbers by joint name, and the URDF's for joints not named.
+        proven path, with a rest at every corner. A quantity without a value is not limited;
+        `joint_velocity`, `joint_acceleration` and `joint_jerk` default to the URDF's. Limits for
+        joints are one number for all, or numbers by name, and the URDF's for joints not named.
 
         Args:
             corners: `smooth` or `rest`.
-            duration: time that a smooth flight takes, as calmly as it can [s]; by default the
-                shortest within the limits.
+            duration: of a smooth flight, the calmest that takes it [s]; by default the shortest.
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
-            thruster_acceleration: thrust / mass, and with `corners="rest"` the base origin's
-                acceleration too [m/s^2]. This and other limits of thrusters and of the base's
-                velocity are refused where it floats.
+            thruster_acceleration: thrust / mass, and with `corners="rest"` that of the base origin
+                [m/s^2]. It and other limits of the base are refused where nothing moves it.
             joint_velocity: [rad/s or m/s].
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
@@ -72,21 +69,15 @@ class Plan(PlanData):
             thruster_jerk: of the base origin [m/s^3].
             turn_velocity: angular velocity of a base, refused without wheels [rad/s].
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
-            velocity_jump: by how much thrusters may change the velocity of the base in one pulse
-                [m/s], only with `corners="rest"`; instead of resting at a corner of its path, the
-                robot then passes it at the highest speed at which the pulse is no larger. Pulses
-                count against `thruster_acceleration`: one of size d takes the time
-                d / thruster_acceleration or longer, does not overlap another, and the pace is
-                constant meanwhile. A pulse cuts its corner (`TimedPlan.corner_cut`); by less than
-                the proven clearance, or the jump is refused.
+            velocity_jump: with `corners="rest"`, the change of the base's velocity by one pulse of
+                the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
 
         Raises:
-            InvalidInput: a limit that cannot be, an acceleration that is needed and not given, a
-                duration shorter than the fastest flight, pulses along a smooth curve or such that
-                cut a corner by more than the proven clearance, or a plan without any motion.
+            InvalidInput: a limit that cannot be or is needed and not given, a duration shorter than
+                the fastest flight, pulses along a smooth curve or such that cut a corner by more
+                than the proven clearance, or a plan without any motion.
             UnprovenCurve: see `smooth`.
         """
-        smoothly = one_of("corners", corners, ("smooth", "rest")) == "smooth"
         limits = read_limits(
             self.problem.robot,
             self.problem.mode,
@@ -101,11 +92,22 @@ class Plan(PlanData):
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
-        if smoothly:
-            return self._flown_smoothly(limits, duration)
-        if duration is not None:
-            raise InvalidInput("duration", duration, "None with corners='rest'")
-        return timed(self.motion, limits, self.certificate.least_clearance)
+        return self._flown(one_of("corners", corners, ("smooth", "rest")), duration, limits)
+
+    def _flown(
+        self, corners: str, duration: float | None, limits: FlightLimits
+    ) -> SmoothFlight | TimedPlan:
+        """See `timed`."""
+        if corners == "rest":
+            if duration is not None:
+                raise InvalidInput("duration", duration, "None with corners='rest'")
+            return timed(self.motion, limits, self.certificate.least_clearance)
+        from ffsr_plan.smooth_flight.smooth_flight import smooth_flight
+
+        if limits.velocity_jump > 0.0:
+            allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
+            raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
+        return smooth_flight(self.smooth().curve, limits, duration)
 
     def smooth(self) -> SmoothPlan:
         """The plan along a smooth curve without corners, proven free as the plan is.
@@ -120,14 +122,6 @@ class Plan(PlanData):
         from ffsr_plan.planning.smooth_plan import smoothed
 
         return smoothed(self)
-
-    def _flown_smoothly(self, limits: FlightLimits, duration: float | None) -> SmoothFlight:
-        from ffsr_plan.smooth_flight.smooth_flight import smooth_flight
-
-        if limits.velocity_jump > 0.0:
-            allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
-            raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
-        return smooth_flight(self.smooth().curve, limits, duration)
 
     def verify(
         self, samples: int | None = None, on_progress: Callable[[float], object] | None = None

@@ -44,7 +44,12 @@ _SAME_FORCE = 1e-9  # relative change over a piece below which a force counts as
 
 @dataclass(frozen=True, eq=False)
 class TimedPlan(Flight):
-    """A plan flown from rest to rest as fast as the limits allow; made by `Plan.timed`.
+    """A plan flown on its path as fast as limits allow; made by `Plan.timed(corners="rest")`.
+
+    It rests at corners of the path, or passes them with pulses of the thrusters, at the highest
+    speed at which no pulse changes the velocity of the base by more than allowed. Pulses count
+    against the limit on thrust: one of size d takes the time d / thruster_acceleration or longer,
+    does not overlap another, and the pace is constant meanwhile.
 
     Attributes:
         motion: the path of the plan.
