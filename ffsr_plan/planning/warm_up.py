@@ -28,7 +28,7 @@ _MANY = 20_001  # spheres whose tree a kernel builds
 
 
 def warm_up(on_progress: Callable[[float], object] | None = None) -> int:
-    """Compile the kernels of all planners, of the verification and of flights, and keep the machine code.
+    """Compile the kernels of planners, verification and flights, and keep the machine code.
 
     Otherwise each kernel is compiled when it is first called. That takes the better part of a
     minute in all, once after an installation; an image of a container holds the machine code after
