@@ -93,6 +93,7 @@ if TYPE_CHECKING:
         Trails,
         TreeCycle,
     )
+    from ffsr_plan.smooth_flight.smooth_flight import SmoothFlight
     from ffsr_plan.trajectory.timed_plan import TimedPlan
     from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.verify import Report
@@ -159,6 +160,7 @@ __all__ = [
     "SelfCollision",
     "SelfCollisions",
     "SmoothCurve",
+    "SmoothFlight",
     "SmoothPlan",
     "Solution",
     "SpaceRobot",
@@ -265,6 +267,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "Trails",
         "TreeCycle",
     ),
+    "smooth_flight.smooth_flight": ("SmoothFlight",),
     "trajectory.timed_plan": ("TimedPlan",),
     "tree_search.tree_planner": ("TreePlanner",),
     "verification.verify": ("Report",),

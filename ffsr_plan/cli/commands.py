@@ -200,6 +200,13 @@ def gif(
 @app.command()
 def timed(
     plan_file: PlanFile,
+    corners: Annotated[
+        str, typer.Option(help="smooth: along a proven smooth curve; rest: a rest at each corner.")
+    ] = "smooth",
+    duration: Annotated[
+        float | None,
+        typer.Option(help="Seconds that a smooth flight takes; by default the fewest."),
+    ] = None,
     joint_acceleration: Annotated[float | None, typer.Option(help="rad/s^2 or m/s^2")] = None,
     thruster_acceleration: Annotated[float | None, typer.Option(help="m/s^2")] = None,
     joint_velocity: Annotated[
@@ -212,7 +219,8 @@ def timed(
     turn_velocity: Annotated[float | None, typer.Option(help="rad/s")] = None,
     turn_acceleration: Annotated[float | None, typer.Option(help="rad/s^2")] = None,
     velocity_jump: Annotated[
-        float, typer.Option(help="Velocity change in m/s of pulses at corners of the base's path.")
+        float,
+        typer.Option(help="Velocity change in m/s of pulses at corners, with --corners rest."),
     ] = 0.0,
     csv: Annotated[
         str | None, typer.Option(metavar="PATH", help="Write the trajectory to this table.")
@@ -222,12 +230,14 @@ def timed(
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:
-    """Time a saved plan as fast as the limits allow: duration, delta-v, thrust, torques."""
+    """Time a saved plan within limits: duration, delta-v, thrust, torques."""
     with errors_on_stderr():
         from ffsr_plan.cli.output import Output
         from ffsr_plan.cli.saved_plans import time_and_report
 
         limits = {
+            "corners": corners,
+            "duration": duration,
             "joint_acceleration": joint_acceleration,
             "thruster_acceleration": thruster_acceleration,
             "joint_velocity": joint_velocity,

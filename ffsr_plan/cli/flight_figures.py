@@ -8,6 +8,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array
+    from ffsr_plan.smooth_flight.smooth_flight import SmoothFlight
     from ffsr_plan.trajectory.timed_plan import TimedPlan
 
 _PEAK_SAMPLES = 10_001  # times at which peaks of a flight are taken
@@ -24,6 +25,8 @@ class FlightFigures(NamedTuple):
         longest_pulse: [s]; None without pulses.
         corner_cut: by which pulses leave the path at most [m]; None without pulses.
         delta_v: of the translation [m/s].
+        straight_delta_v: the same along a straight line in the same time [m/s]; None with rests at
+            corners.
         peak_thrust: [N].
         peak_wheel_torque: (3,) in base axes [N m]; None without wheels.
         peak_wheel_momentum: (3,) in base axes [N m s]; None without wheels.
@@ -38,6 +41,7 @@ class FlightFigures(NamedTuple):
     longest_pulse: float | None
     corner_cut: float | None
     delta_v: float
+    straight_delta_v: float | None
     peak_thrust: float
     peak_wheel_torque: Array | None
     peak_wheel_momentum: Array | None
@@ -45,16 +49,16 @@ class FlightFigures(NamedTuple):
     peak_joint_forces: dict[str, float]
 
 
-def flight_figures(flight: TimedPlan) -> FlightFigures:
+def flight_figures(flight: SmoothFlight | TimedPlan) -> FlightFigures:
     """The figures of a timed plan."""
-    robot = flight.motion.robot
+    robot = flight.robot
     times = np.linspace(0.0, flight.duration, _PEAK_SAMPLES)
     states = flight.at(times)
     mass = sum(body.mass for body in list(robot.model.inertias)[1:])
     thrust = states.thrust + mass * flight.pulse_accelerations(times)
     loads = np.max(np.abs(states.torques), axis=0).tolist()
     named = list(zip(robot.joint_names, loads, robot.prismatic, strict=True))
-    count, wheels = len(flight.pulses), flight.motion.mode.has_wheels
+    count, wheels = len(flight.pulses), flight.mode.has_wheels
     return FlightFigures(
         duration=flight.duration,
         rests=len(flight.rests),
@@ -63,6 +67,7 @@ def flight_figures(flight: TimedPlan) -> FlightFigures:
         longest_pulse=float(np.max(flight.pulse_durations)) if count else None,
         corner_cut=flight.corner_cut if count else None,
         delta_v=flight.delta_v,
+        straight_delta_v=getattr(flight, "straight_delta_v", None),
         peak_thrust=float(np.max(np.linalg.norm(thrust, axis=1))),
         peak_wheel_torque=np.max(np.abs(states.wheel_torque), axis=0) if wheels else None,
         peak_wheel_momentum=np.max(np.abs(states.wheel_momentum), axis=0) if wheels else None,

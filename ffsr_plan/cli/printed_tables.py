@@ -95,13 +95,16 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
 def flight_rows(flight: FlightFigures) -> Iterator[tuple[str, str]]:
     """Names and values of a timed plan."""
     yield "duration", f"{flight.duration:.2f} s"
-    yield "rests on the way", f"{flight.rests}, at corners of the path"
+    where = ", at corners of the path" if flight.rests else ""
+    yield "rests on the way", f"{flight.rests}{where}"
     if flight.pulses:
         largest, longest = flight.largest_pulse, flight.longest_pulse
         text = f"{flight.pulses}, the largest {largest:.3g} m/s, the longest {longest:.3g} s"
         yield "pulses", text
         yield "corner cut by them", f"at most {flight.corner_cut:.3g} m"
     yield "delta-v of the translation", f"{flight.delta_v:.4g} m/s"
+    if flight.straight_delta_v is not None:
+        yield "  along a straight line", f"{flight.straight_delta_v:.4g} m/s in the same time"
     yield "peak thrust", f"{flight.peak_thrust:.3g} N"
     for name, values, unit in (
         ("torque", flight.peak_wheel_torque, "N m"),

@@ -1,15 +1,7 @@
-"""Inverse dynamics: forces of thrusters, wheels and joints along a motion with a time law.
+"""`States`: positions, velocities, accelerations and forces along a motion with a time law.
 
-A motion and its pace, sigma' and sigma'' for the time sigma on an edge, give velocities and
-accelerations. Those of a base that reacts follow from h = A_b v_b + A_theta theta' = 0 and from its
-derivative, where A = [A_b A_theta] is the centroidal momentum matrix, restricted to the rows and
-columns of the reacting velocities:
-
-    v_b = -A_b^-1 A_theta theta'        v_b' = -A_b^-1 (A' v + A_theta theta'')
-
-The recursive Newton-Euler algorithm without gravity then gives the joint torques, and the force and
-moment on the base. In free flight all of them are quadratic in the pace: the same motion flown k
-times as slowly needs 1 / k^2 of every force (Hollerbach 1984).
+A path and its pace, s' and s'', give everything else (`path_dynamics`): velocities, accelerations,
+those of a reacting base included, and the forces of thrusters, wheels and joints.
 """
 
 from __future__ import annotations
@@ -17,14 +9,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray, equal_by_content
 from ffsr_plan.core.rotations import cross
-from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.robots.kinematics import turned
+from ffsr_plan.dynamics.path_dynamics import PathDynamics, Prescribed, path_dynamics
 
 
 @equal_by_content
@@ -62,9 +52,24 @@ class States(NamedTuple):
         return f"States({count} instants, {joints} joints)"
 
     @property
+    def base_position(self) -> Array:
+        """(N, 3) base origin in the world [m]."""
+        return self.configurations[:, :3]
+
+    @property
     def attitudes(self) -> Array:
         """(N, 4) attitude of the base, base axes to world axes (xyzw)."""
         return self.configurations[:, 3:7]
+
+    @property
+    def attitude(self) -> Array:
+        """(N, 4) the same as `attitudes`."""
+        return self.attitudes
+
+    @property
+    def joint_positions(self) -> Array:
+        """(N, nd) the same as `joints` [rad or m]."""
+        return self.joints
 
     @property
     def joint_velocities(self) -> Array:
@@ -72,9 +77,19 @@ class States(NamedTuple):
         return self.velocities[:, 6:]
 
     @property
+    def joint_accelerations(self) -> Array:
+        """(N, nd) joint accelerations [rad/s^2 or m/s^2]."""
+        return self.accelerations[:, 6:]
+
+    @property
     def base_velocity(self) -> Array:
         """(N, 3) velocity of the base origin, world axes [m/s]."""
         return rotations.rotate(self.attitudes, self.velocities[:, :3])
+
+    @property
+    def angular_velocity(self) -> Array:
+        """(N, 3) angular velocity of the base, base axes [rad/s]."""
+        return self.velocities[:, 3:6]
 
     @property
     def base_acceleration(self) -> Array:
@@ -105,67 +120,59 @@ def states(
     Returns:
         The states, forces included.
     """
-    q, joints = motion.at(edge, time), motion.joints_at(edge, time)
-    to_base = np.swapaxes(rotations.matrix(q[:, 3:7]), 1, 2)
-    v, a = _prescribed(motion, edge, to_base, pace, acceleration)
+    steps = np.diff(motion.joint_values, axis=0)[edge]
+    turns = motion.turns[edge] if motion.mode.has_wheels else np.zeros((len(edge), 3))
+    base = _by_time(motion.base_steps()[edge], pace, acceleration)
     if push is not None:
-        a[:, :3] += turned(to_base, push)
-    efforts, stored = _efforts(motion, q, v, a, to_base)
-    force, moment, torques = efforts[:, :3], efforts[:, 3:6], efforts[:, 6:]
-    thrust = wheel_torque = np.zeros((len(q), 3))
-    if motion.mode.has_thrusters:
-        thrust = rotations.rotate(q[:, 3:7], force)
-    if motion.mode.has_wheels:
-        wheel_torque = moment - cross(centers_of_mass(motion.robot, joints), force)
-    parameters = (edge + time) / motion.edges
-    return States(parameters, joints, q, v, a, thrust, wheel_torque, stored, torques)
+        base[:, 1] += push
+    path = Prescribed(
+        motion.at(edge, time),
+        motion.joints_at(edge, time),
+        base,
+        _by_time(turns, pace, acceleration),
+        _by_time(steps, pace, acceleration),
+    )
+    dynamics, one = path_dynamics(motion.robot, motion.mode, path), np.ones(len(edge))
+    return states_along(path, dynamics, (edge + time) / motion.edges, one, 0.0 * one)
 
 
-def _prescribed(
-    motion: Motion, edge: IntArray, to_base: Array, pace: Array, acceleration: Array
-) -> tuple[Array, Array]:
-    """(N, nv) velocities and accelerations, zero where the base reacts."""
-    step = np.hstack([np.zeros((len(edge), 6)), np.diff(motion.joint_values, axis=0)[edge]])
-    if motion.mode.has_wheels:
-        step[:, 3:6] = motion.turns[edge]
-    v, a = step * pace[:, None], step * acceleration[:, None]
-    if motion.mode.has_thrusters:
-        base_step = motion.base_steps()[edge]
-        v[:, :3] = turned(to_base, base_step * pace[:, None])
-        a[:, :3] = turned(to_base, base_step * acceleration[:, None])
-    return v, a
+def states_along(
+    path: Prescribed, dynamics: PathDynamics, parameters: Array, pace: Array, acceleration: Array
+) -> States:
+    """The states at N points of a path, given the pace there.
 
+    Args:
+        path: the points.
+        dynamics: of the path there.
+        parameters: (N,) path parameters to state.
+        pace: (N,) s' [1/s].
+        acceleration: (N,) s'' [1/s^2].
 
-def _efforts(motion: Motion, q: Array, v: Array, a: Array, to_base: Array) -> tuple[Array, Array]:
-    """(N, nv) forces by the Newton-Euler algorithm and (N, 3) wheel momentum in base axes.
-
-    The velocities and accelerations `v`, `a` (N, nv) of a reacting base are filled in.
+    Returns:
+        The states, forces included.
     """
-    mode = motion.mode
-    model, data = motion.robot.model.copy(), motion.robot.model.createData()
-    model.gravity = pin.Motion.Zero()
-    efforts = np.empty_like(v)
-    stored = np.zeros((len(q), 3))
-    for k in range(len(q)):
-        if mode.attitude_reacts:
-            _react(model, data, q[k], v[k], a[k], slice(0 if mode.floats else 3, 6))
-        else:
-            stored[k] = -to_base[k] @ pin.computeCentroidalMomentum(model, data, q[k], v[k]).angular
-        if mode.has_thrusters:
-            a[k, :3] -= np.cross(v[k, 3:6], v[k, :3])  # base axes rotate with the base
-        efforts[k] = pin.rnea(model, data, q[k], v[k], a[k])
-    return efforts, stored
+    u, x = acceleration[:, None], pace[:, None] ** 2
+
+    def of(pair: Array) -> Array:
+        both: Array = pair[:, 0] * u + pair[:, 1] * x
+        return both
+
+    return States(
+        parameters,
+        path.joints,
+        path.configurations,
+        dynamics.velocities[:, 0] * pace[:, None],
+        of(dynamics.velocities),
+        of(dynamics.thrust),
+        of(dynamics.wheel_torque),
+        -dynamics.wheel_torque[:, 0] * pace[:, None],
+        of(dynamics.torques),
+    )
 
 
-def _react(model: pin.Model, data: pin.Data, q: Array, v: Array, a: Array, base: slice) -> None:
-    """Fill in the reacting part `base` of velocity and acceleration (nv,), which is zero before.
-
-    The base's linear velocity does not contribute to the angular momentum.
-    """
-    matrix = np.array(pin.computeCentroidalMap(model, data, q))[base]
-    v[base] = -np.linalg.solve(matrix[:, base], matrix @ v)
-    change = np.array(pin.computeCentroidalMapTimeVariation(model, data, q, v))[base]
-    a[base] = -np.linalg.solve(matrix[:, base], change @ v + matrix @ a)
+def _by_time(steps: Array, pace: Array, acceleration: Array) -> Array:
+    """(N, 2, k) first and second derivatives by time, of steps (N, k) per unit of sigma."""
+    return np.stack([steps * pace[:, None], steps * acceleration[:, None]], axis=1)
 
 
-__all__ = ["States", "states"]
+__all__ = ["States", "states", "states_along"]

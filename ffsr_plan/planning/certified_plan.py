@@ -9,21 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ffsr_plan.core.checks import one_of, text, whole_number
 from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.checks import text, whole_number
 from ffsr_plan.core.cost_estimate import check_memory
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
 from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_csv
-from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
+from ffsr_plan.trajectory.flight_limits import FlightLimits, PerJoint, read_limits
 from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
 
 if TYPE_CHECKING:
     from ffsr_plan.display.page_server import PageServer
     from ffsr_plan.planning.smooth_plan import SmoothPlan
+    from ffsr_plan.smooth_flight.smooth_flight import SmoothFlight
     from ffsr_plan.verification.verify import Report
 
 
@@ -34,6 +36,8 @@ class Plan(PlanData):
     def timed(
         self,
         *,
+        corners: str = "smooth",
+        duration: float | None = None,
         joint_acceleration: PerJoint = None,
         thruster_acceleration: float | None = None,
         joint_velocity: PerJoint = None,
@@ -44,18 +48,20 @@ class Plan(PlanData):
         turn_velocity: float | None = None,
         turn_acceleration: float | None = None,
         velocity_jump: float = 0.0,
-    ) -> TimedPlan:
-        """The plan flown as fast as limits allow, from rest to rest, on exactly the proven path.
+    ) -> SmoothFlight | TimedPlan:
+        """The plan flown within limits, from rest at the start to rest at the goal.
 
-        It rests at every corner of the path, where a velocity would have to change at once.
-        A quantity without a value is not limited; `joint_velocity`, and where the URDF has such
-        limits `joint_acceleration` and `joint_jerk`, default to the URDF's. Limits for joints are
-        one number for all, or numbers by joint name, and the URDF's for joints not named.
+        The flight follows the proven smooth curve of `smooth`, or with `corners="rest"` exactly the
+        proven path, with a rest at every corner. A quantity without a value is not limited;
+        `joint_velocity`, `joint_acceleration` and `joint_jerk` default to the URDF's. Limits for
+        joints are one number for all, or numbers by name, and the URDF's for joints not named.
 
         Args:
+            corners: `smooth` or `rest`.
+            duration: of a smooth flight, the calmest that takes it [s]; by default the shortest.
             joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
-            thruster_acceleration: of the base origin, and thrust / mass [m/s^2]. This and
-                other limits of thrusters and of the base's velocity are refused where it floats.
+            thruster_acceleration: thrust / mass, and with `corners="rest"` that of the base origin
+                [m/s^2]. It and other limits of the base are refused where nothing moves it.
             joint_velocity: [rad/s or m/s].
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
@@ -63,18 +69,14 @@ class Plan(PlanData):
             thruster_jerk: of the base origin [m/s^3].
             turn_velocity: angular velocity of a base, refused without wheels [rad/s].
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
-            velocity_jump: by how much thrusters may change the velocity of the base in one pulse
-                [m/s]; instead of resting at a corner of its path, the robot then passes it at the
-                highest speed at which the pulse is no larger. Pulses count against
-                `thruster_acceleration`: one of size d takes the time d / thruster_acceleration or
-                longer, does not overlap another, and the pace is constant meanwhile. A pulse cuts
-                its corner (`TimedPlan.corner_cut`); by less than the proven clearance, or the jump
-                is refused.
+            velocity_jump: with `corners="rest"`, the change of the base's velocity by one pulse of
+                the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
 
         Raises:
-            InvalidInput: a limit that cannot be, an acceleration that is needed and not given,
-                pulses that cut a corner by more than the proven clearance, or a plan without any
-                motion.
+            InvalidInput: a limit that cannot be or is needed and not given, a duration shorter than
+                the fastest flight, pulses along a smooth curve or such that cut a corner by more
+                than the proven clearance, or a plan without any motion.
+            UnprovenCurve: see `smooth`.
         """
         limits = read_limits(
             self.problem.robot,
@@ -90,7 +92,22 @@ class Plan(PlanData):
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
-        return timed(self.motion, limits, self.certificate.least_clearance)
+        return self._flown(one_of("corners", corners, ("smooth", "rest")), duration, limits)
+
+    def _flown(
+        self, corners: str, duration: float | None, limits: FlightLimits
+    ) -> SmoothFlight | TimedPlan:
+        """See `timed`."""
+        if corners == "rest":
+            if duration is not None:
+                raise InvalidInput("duration", duration, "None with corners='rest'")
+            return timed(self.motion, limits, self.certificate.least_clearance)
+        from ffsr_plan.smooth_flight.smooth_flight import smooth_flight
+
+        if limits.velocity_jump > 0.0:
+            allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
+            raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
+        return smooth_flight(self.smooth().curve, limits, duration)
 
     def smooth(self) -> SmoothPlan:
         """The plan along a smooth curve without corners, proven free as the plan is.

@@ -29,7 +29,7 @@ _MANY = 20_001  # spheres whose tree a kernel builds
 
 
 def warm_up(on_progress: Callable[[float], object] | None = None) -> int:
-    """Compile the kernels of all planners and of the verification, and keep the machine code.
+    """Compile the kernels of planners, verification and flights, and keep the machine code.
 
     Otherwise each kernel is compiled when it is first called. That takes the better part of a
     minute in all, once after an installation; an image of a container holds the machine code after
@@ -50,7 +50,7 @@ def warm_up(on_progress: Callable[[float], object] | None = None) -> int:
     for done, (problem, planner) in enumerate(cases):
         found = plan(problem, planner, on_interrupt="raise")
         found.verify(1)
-        found.smooth()
+        found.timed(joint_acceleration=1.0, thruster_acceleration=1.0)
         if on_progress is not None:
             on_progress((done + 1) / len(cases))
     last = cases[-1][0]

@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.core.checks import number, unknown_name
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, Rule
@@ -176,21 +176,20 @@ def _refuse_limits_without_actuator(mode: Mode, given: dict[str, Any]) -> None:
             raise InvalidInput(name, given[name], allowed)
 
 
-def check_limits(limits: FlightLimits, runs: StraightRuns, robot: SpaceRobot, floats: bool) -> None:
+def check_limits(limits: FlightLimits, moves: Flags, robot: SpaceRobot, floats: bool) -> None:
     """Check that everything that moves has a limit on its acceleration, and pulses none on jerk.
 
     There is no default that suits both a robot of one kilogram and one of ten tonnes.
 
     Args:
         limits: the limits.
-        runs: the straight runs of the motion.
+        moves: (2 + nd,) whether thrusters move the base, wheels turn it, and each joint moves.
         robot: the robot.
         floats: whether the base has no thrusters.
 
     Raises:
         InvalidInput: naming the missing limit, or the joint whose jerk the URDF limits.
     """
-    moves = np.max(runs.rates(), axis=0) > 0.0
     for k, name in enumerate(robot.joint_names, start=2):
         if limits.velocity_jump > 0.0 and moves[k] and np.isfinite(limits.jerk[k]):
             allowed = f"0, as the URDF limits the jerk of joint {name}: a jump has an infinite jerk"

@@ -30,6 +30,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.trajectory.cubic_pieces import evaluate
 from ffsr_plan.trajectory.profiles import Phase, s_curve, trapezoid
 from ffsr_plan.trajectory.straight_runs import StraightRuns
 
@@ -69,13 +70,7 @@ class TimeLaw(NamedTuple):
         Returns:
             x, x' and x'', (N,) each.
         """
-        t = times - self.times[piece]
-        x, speed, acceleration, jerk = self.begin[piece].T
-        return (
-            x + t * (speed + t * (acceleration / 2.0 + t * jerk / 6.0)),
-            speed + t * (acceleration + t * jerk / 2.0),
-            acceleration + t * jerk,
-        )
+        return evaluate(self.begin[piece], times - self.times[piece])
 
     def slowed(self, factors: Array) -> TimeLaw:
         """The law with each piece's duration multiplied by a factor.

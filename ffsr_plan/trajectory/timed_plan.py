@@ -18,7 +18,6 @@ collision.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -26,13 +25,13 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
-from ffsr_plan.core.checks import finite_array, number
-from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.cost_estimate import check_memory
+from ffsr_plan.core.checks import finite_array
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.inverse_dynamics import States, states
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, trajectory_table, write_csv
+from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.trajectory.flight import Flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits, check_limits
 from ffsr_plan.trajectory.straight_runs import StraightRuns, straight_runs
 from ffsr_plan.trajectory.time_law import PulseLimits, TimeLaw, time_law
@@ -41,12 +40,16 @@ _NODES = 16  # of Gauss-Lobatto quadrature, which includes both ends of a piece
 _LARGEST_JOINT_STEP = 0.2  # [rad or m] between two sets of quadrature nodes
 _FORCE_MARGIN = 1e-3  # relative margin of forces for peaks between the nodes
 _SAME_FORCE = 1e-9  # relative change over a piece below which a force counts as constant
-_MOST_ROWS = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class TimedPlan:
-    """A plan flown from rest to rest as fast as the limits allow; made by `Plan.timed`.
+class TimedPlan(Flight):
+    """A plan flown on its path as fast as limits allow; made by `Plan.timed(corners="rest")`.
+
+    It rests at corners of the path, or passes them with pulses of the thrusters, at the highest
+    speed at which no pulse changes the velocity of the base by more than allowed. Pulses count
+    against the limit on thrust: one of size d takes the time d / thruster_acceleration or longer,
+    does not overlap another, and the pace is constant meanwhile.
 
     Attributes:
         motion: the path of the plan.
@@ -79,6 +82,16 @@ class TimedPlan:
         )
 
     @property
+    def robot(self) -> SpaceRobot:
+        """The robot."""
+        return self.motion.robot
+
+    @property
+    def mode(self) -> Mode:
+        """What actuates the base."""
+        return self.motion.mode
+
+    @property
     def duration(self) -> float:
         """Duration of the flight [s]."""
         return self._law.duration
@@ -104,10 +117,7 @@ class TimedPlan:
         Raises:
             InvalidInput: no times, or times outside [0, duration].
         """
-        instants = finite_array("times", times, (-1,))
-        if instants.size == 0 or np.any((instants < 0.0) | (instants > self.duration)):
-            allowed = f"at least one time, all from 0 to {self.duration!r} s"
-            raise InvalidInput("times", times, allowed)
+        instants = self._instants(times)
         return _states(self.motion, self._runs, self._law, self._law.piece(instants), instants)
 
     def pulse_accelerations(self, times: ArrayLike) -> Array:
@@ -125,41 +135,6 @@ class TimedPlan:
         instants = finite_array("times", times, (-1,))
         return _Pulses(self.pulse_times, self.pulse_durations, self.pulses).accelerations(instants)
 
-    def clock(self, rate: float) -> Array:
-        """Equally spaced times 0, 1 / rate, 2 / rate, ..., and the end.
-
-        Args:
-            rate: number of times per second [1/s].
-
-        Returns:
-            (N,) times [s].
-
-        Raises:
-            InvalidInput: a rate that is not positive, or more than a million times.
-        """
-        rate = number("rate", rate, above=0.0, at_most=_MOST_ROWS / self.duration)
-        count = int(np.ceil(self.duration * rate * (1.0 - 1e-12)))
-        return np.append(np.arange(count) / rate, self.duration)
-
-    def to_csv(self, path: str | Path, rate: float) -> None:
-        """Write the trajectory as a table with one row for each time and units in the header.
-
-        The columns are time, path parameter, base pose, base velocity and acceleration (linear in
-        world axes, angular in base axes), joints, thrust, wheels and torques. The states are those
-        of `at`, without pulses. An existing file is replaced.
-
-        Args:
-            path: of the file.
-            rate: rows per second [1/s]; the last row is the end.
-
-        Raises:
-            InvalidInput: a file that cannot be written, or a rate that is not possible.
-        """
-        target, times = checked_path("path", path), self.clock(rate)
-        size = {"rows": len(times), "columns": 30 + 5 * self.motion.robot.nd}
-        check_memory("rate", size, BYTES_PER_CELL, "a lower rate")
-        write_csv(target, trajectory_table(self.motion.robot, times, self.at(times)))
-
 
 def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:
     """The fastest flight along a motion from rest to rest; see `Plan.timed`.
@@ -176,7 +151,7 @@ def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:
     runs = straight_runs(motion)
     if not len(runs.first):
         raise InvalidInput("plan", "one in which nothing moves", "a plan in which something moves")
-    check_limits(limits, runs, motion.robot, motion.mode.floats)
+    check_limits(limits, np.max(runs.rates(), axis=0) > 0.0, motion.robot, motion.mode.floats)
     law, speeds, lasting = time_law(
         runs, limits.along(runs), PulseLimits(limits.velocity_jump, limits.acceleration[0])
     )

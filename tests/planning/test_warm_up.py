@@ -40,7 +40,10 @@ for name in sys.argv[1:]:
         except fp.PlanningError:
             continue
         plan.verify(5)
-        plan.smooth()
+        mode, limits = plan.problem.mode, {"joint_acceleration": 1.0}
+        limits |= {"thruster_acceleration": 1.0} if mode.has_thrusters else {}
+        limits |= {"turn_acceleration": 1.0} if mode.has_wheels else {}
+        plan.timed(**limits)
         figure_files(plan)
     print(name, sorted(known() - before))
 """

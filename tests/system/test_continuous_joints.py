@@ -126,7 +126,7 @@ def test_tables_and_flights_follow_the_unwrapped_joint(spinner, tmp_path):
         rows = list(csv.DictReader(file))
     column = np.array([float(row["spin position [rad]"]) for row in rows])
     assert np.allclose(column, by_hand(plan, np.linspace(0.0, 1.0, 301))[2], atol=1e-12)
-    flight = plan.timed(joint_acceleration=0.5, thruster_acceleration=0.1)
+    flight = plan.timed(corners="rest", joint_acceleration=0.5, thruster_acceleration=0.1)
     states = flight.at(np.linspace(0.0, flight.duration, 301))
     assert np.allclose(states.joints[:, 0], by_hand(plan, states.parameters)[2], atol=1e-9)
     assert np.max(np.abs(np.diff(states.joints[:, 0]))) < 1.0

@@ -137,7 +137,8 @@ def calls(plan, tmp_path_factory):
         show_and_go_on: {**view, "title": "t"},
         plan.timed: FIELDS | dict.fromkeys(
             ("joint_velocity", "base_velocity", "joint_torque", "joint_jerk", "thruster_jerk",
-             "turn_velocity", "turn_acceleration")) | {"velocity_jump": 0.0},
+             "turn_velocity", "turn_acceleration", "duration")
+        ) | {"velocity_jump": 0.0, "corners": "smooth"},
         flight.at: {"times": [0.0]},
         flight.clock: {"rate": 1.0},
         flight.to_csv: {"path": folder / "f.csv", "rate": 1.0},
@@ -193,7 +194,7 @@ def test_the_interface_is_covered(calls):
         "Replacement", "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
-        "SearchResult", "SmoothCurve", "SmoothPlan", "Solution", "SpaceRobot",
+        "SearchResult", "SmoothCurve", "SmoothFlight", "SmoothPlan", "Solution", "SpaceRobot",
         "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum",
     }  # fmt: skip
     without_arguments = {"arm_names", "robot_names", "robot_summaries", "warm_up"}  # or callbacks

@@ -43,8 +43,11 @@ def plan():
 @pytest.fixture(scope="module")
 def flight(plan):
     return plan.timed(
-        joint_acceleration=0.1, thruster_acceleration=0.05, turn_acceleration=0.02
-    )  # fmt: skip
+        corners="rest",
+        joint_acceleration=0.1,
+        thruster_acceleration=0.05,
+        turn_acceleration=0.02,
+    )
 
 
 def read(path):

@@ -234,7 +234,7 @@ def test_pulses_that_cut_deeper_than_the_clearance_are_refused():
 
 
 def test_a_plan_is_flown_faster_with_pulses(fig2a_plan):
-    limits = {"joint_acceleration": 0.1, "thruster_acceleration": 0.01}
+    limits = {"joint_acceleration": 0.1, "thruster_acceleration": 0.01, "corners": "rest"}
     rest = fig2a_plan.timed(**limits)
     flight = fig2a_plan.timed(**limits, velocity_jump=0.02)
     assert flight.corner_cut < fig2a_plan.certificate.least_clearance

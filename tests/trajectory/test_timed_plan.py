@@ -122,7 +122,7 @@ def test_half_speed_and_quarter_acceleration_double_the_duration(seed, mode):
 
 
 def test_configurations_are_the_plans_and_s_never_decreases(fig2a_plan):
-    flight = fig2a_plan.timed(joint_acceleration=0.1, thruster_acceleration=0.01)
+    flight = fig2a_plan.timed(corners="rest", joint_acceleration=0.1, thruster_acceleration=0.01)
     states = flight.at(np.linspace(0.0, flight.duration, 2001))
     assert np.all(np.diff(states.parameters) >= 0.0)
     assert np.allclose(states.configurations, fig2a_plan.at(states.parameters), atol=1e-12)

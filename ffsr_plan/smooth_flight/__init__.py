@@ -1,0 +1,1 @@
+"""Smooth flights: time laws along smooth curves, at rest at the ends only."""
