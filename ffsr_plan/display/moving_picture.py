@@ -16,7 +16,7 @@ from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.text_files import write_files
 from ffsr_plan.display.picture_data import MotionFrames, drawn_solid, motion_frames, trail_segments
-from ffsr_plan.display.projection import Outline, outlines, view_axes, visible_shapes
+from ffsr_plan.display.projection import VIEWS, Outline, outlines, view_axes, visible_shapes
 from ffsr_plan.display.scene_objects import TIPS, TRACK, glow
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array
     from ffsr_plan.plans.plan_data import PlanData
 
-VIEWS = {"path": (0, 1, 2), "side": (0, 2, 1)}
-"""Rows of the view axes that point to the right, upwards and towards the viewer."""
 _BACKGROUND, _TEXT, _STRONG = "#070a12", "#9aa5b8", "#eceff4"
 _OBSTACLE, _CLEARANCE, _CONTACT = "#aeb4bf", "#5fb3ce", "#b02a30"
 _START, _GOAL, _ATTITUDE = "#4fb3d9", "#58c27d", "#f0b429"
