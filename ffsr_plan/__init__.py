@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from ffsr_plan.lattice.layered_lattice import LayeredLattice
     from ffsr_plan.lattice.roadmap import Roadmap
     from ffsr_plan.planning.certified_plan import Plan
+    from ffsr_plan.planning.flights import TimedPlan
     from ffsr_plan.planning.plan_and_refine import plan, refine
     from ffsr_plan.planning.warm_up import warm_up
     from ffsr_plan.portfolio.portfolio_planner import Portfolio
@@ -87,7 +88,6 @@ if TYPE_CHECKING:
         Trails,
         TreeCycle,
     )
-    from ffsr_plan.trajectory.timed_plan import TimedPlan
     from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.verify import Report
 
@@ -213,6 +213,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "lattice.layered_lattice": ("LayeredLattice",),
     "lattice.roadmap": ("Roadmap",),
     "planning.certified_plan": ("Plan",),
+    "planning.flights": ("TimedPlan",),
     "planning.plan_and_refine": ("plan", "refine"),
     "planning.warm_up": ("warm_up",),
     "portfolio.portfolio_planner": ("Portfolio",),
@@ -246,7 +247,6 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "Trails",
         "TreeCycle",
     ),
-    "trajectory.timed_plan": ("TimedPlan",),
     "tree_search.tree_planner": ("TreePlanner",),
     "verification.verify": ("Report",),
 }

@@ -14,12 +14,13 @@ from ffsr_plan.core.checks import text, whole_number
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
+from ffsr_plan.planning.flights import TimedPlan, timed_plan
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
 from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_csv
 from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
-from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
+from ffsr_plan.trajectory.timed_plan import timed
 
 if TYPE_CHECKING:
     from ffsr_plan.display.page_server import PageServer
@@ -89,7 +90,8 @@ class Plan(PlanData):
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
-        return timed(self.motion, limits, self.certificate.least_clearance)
+        flight = timed(self.motion, limits, self.certificate.least_clearance)
+        return timed_plan(flight, self.problem, limits)
 
     def verify(
         self, samples: int | None = None, on_progress: Callable[[float], object] | None = None
