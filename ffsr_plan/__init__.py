@@ -36,7 +36,7 @@ if TYPE_CHECKING:
         WorkerDied,
     )
     from ffsr_plan.display.live.live_view import LiveView
-    from ffsr_plan.display.page_server import PageServer
+    from ffsr_plan.display.web.page_server import PageServer
     from ffsr_plan.dynamics import momentum
     from ffsr_plan.dynamics.actuation_mode import Mode
     from ffsr_plan.dynamics.inverse_dynamics import States
@@ -202,7 +202,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "WorkerDied",
     ),
     "display.live.live_view": ("LiveView",),
-    "display.page_server": ("PageServer",),
+    "display.web.page_server": ("PageServer",),
     "dynamics.actuation_mode": ("Mode",),
     "dynamics.inverse_dynamics": ("States",),
     "dynamics.motion": ("Motion",),

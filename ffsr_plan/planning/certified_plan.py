@@ -20,10 +20,9 @@ from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
 from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_csv
 from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
-from ffsr_plan.trajectory.timed_plan import timed
 
 if TYPE_CHECKING:
-    from ffsr_plan.display.page_server import PageServer
+    from ffsr_plan.display.web.page_server import PageServer
     from ffsr_plan.verification.verify import Report
 
 
@@ -90,8 +89,7 @@ class Plan(PlanData):
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
-        flight = timed(self.motion, limits, self.certificate.least_clearance)
-        return timed_plan(flight, self.problem, limits)
+        return timed_plan(self, limits)
 
     def verify(
         self, samples: int | None = None, on_progress: Callable[[float], object] | None = None
@@ -219,8 +217,8 @@ class Plan(PlanData):
         Raises:
             InvalidInput: a port that cannot be had, such as one in use.
         """
-        from ffsr_plan.display.browser import serve
         from ffsr_plan.display.plan_page import page
+        from ffsr_plan.display.web.browser import serve
 
         return serve(page(self, text("title", title)), port, block, open_browser)
 

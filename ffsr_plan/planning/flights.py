@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 from ffsr_plan.planning.flight_pictures import FlightPictures
+from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 from ffsr_plan.trajectory.timed_plan import TimedPlan as TimedMotion
+from ffsr_plan.trajectory.timed_plan import timed
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -34,7 +36,8 @@ class TimedPlan(FlightPictures, TimedMotion):
     limits: FlightLimits
 
 
-def timed_plan(flight: TimedMotion, problem: Problem, limits: FlightLimits) -> TimedPlan:
-    """A timed motion with its problem and limits."""
+def timed_plan(plan: PlanData, limits: FlightLimits) -> TimedPlan:
+    """A plan flown within limits, with rests or pulses at its corners; see `Plan.timed`."""
+    flight = timed(plan.motion, limits, plan.certificate.least_clearance)
     own = {field.name: getattr(flight, field.name) for field in fields(TimedMotion)}
-    return TimedPlan(**own, problem=problem, limits=limits)
+    return TimedPlan(**own, problem=plan.problem, limits=limits)
