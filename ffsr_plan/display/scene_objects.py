@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -15,12 +16,13 @@ from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
 TRACK, TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)  # colours of the base's and the tips' tracks
+_MARGIN = 0.3  # around the scene [m]
 _TRIANGLES = 90_000  # of solid and of faint obstacles each; more obstacles are drawn less round
 START, GOAL, _OBSTACLE, _FAINT = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
 _GLOW = np.array([(0.14, 0.10, 0.29), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
 
 
-def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) -> dict[str, float]:
+def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) -> dict[str, Any]:
     """Set light and background, and rotate the scene so that the path runs from left to right.
 
     Args:
@@ -31,8 +33,9 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
         radii: (g,) their radii [m].
 
     Returns:
-        Width and height of the scene [m], field of view [degrees] and elevation of the camera
-        [rad], from which the page's script computes the distance of the camera.
+        Size (3) of the scene to the right, upwards and towards the viewer [m], field of view
+        [degrees] and elevation of the camera [rad], from which the page's script computes where
+        the camera is; and the placement (4, 4) of the world in the scene.
     """
     for name in ("/Grid", "/Axes"):
         viewer[name].set_property("visible", False)
@@ -54,9 +57,12 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
     root[:3, :3] = axes
     root[:3, 3] = -0.5 * (low + high)
     viewer.set_transform(root)
-    margin = 0.8  # around the scene [m]
-    width, height = high[0] - low[0] + margin, high[1] - low[1] + margin
-    return {"width": width, "height": height, "fov": fov, "elevation": math.radians(62.0)}
+    return {
+        "size": (high - low + _MARGIN).tolist(),
+        "fov": fov,
+        "elevation": math.radians(62.0),
+        "root": root.tolist(),
+    }
 
 
 def add_obstacles(viewer: MeshcatNode, scene: Scene, drawn_solid: Flags) -> None:

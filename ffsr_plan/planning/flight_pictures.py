@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
+from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.checks import text
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ffsr_plan.display.flights.flight_samples import Flight, FlownProblem
+    from ffsr_plan.display.web.page_server import PageServer
 
 
 class FlightPictures:
@@ -70,11 +73,55 @@ class FlightPictures:
         Raises:
             InvalidInput: another kind of file, or one that cannot be written.
         """
-        from ffsr_plan.core.checks import path as checked_path
         from ffsr_plan.display.figure_style import FORMATS, write_figure
 
         target = checked_path("path", path, *FORMATS)
         write_figure(self.figure(), target)
+
+    def write_html(self, path: str | Path, title: str = "") -> None:
+        """Write one self-contained page that plays the flight in true time; it needs no network.
+
+        Args:
+            path: of the file; an existing file is replaced.
+            title: heading; by default the robot and the mode.
+
+        Raises:
+            InvalidInput: a path or title that is none, or a file that cannot be written.
+        """
+        from ffsr_plan.core.text_files import write_text
+        from ffsr_plan.display.flights.flight_page import flight_page
+
+        target = checked_path("path", path)
+        write_text("page", target, flight_page(self._flown(), text("title", title)))
+
+    def show(
+        self,
+        port: int = 0,
+        *,
+        block: bool | None = None,
+        open_browser: bool | None = None,
+        title: str = "",
+    ) -> PageServer:
+        """Show the page of `write_html`, served on 127.0.0.1 by this process; in notebooks too.
+
+        Args:
+            port: 0 for any that is free.
+            block: whether to go on only after Ctrl-C; by default in scripts.
+            open_browser: whether to open the user's browser; by default unless in a notebook, where
+                the page appears as a frame below the cell.
+            title: as for `write_html`.
+
+        Returns:
+            The server, with its `url`; `stop()`, or the end of a `with` block, ends it.
+
+        Raises:
+            InvalidInput: a port that cannot be had, such as one in use.
+        """
+        from ffsr_plan.display.flights.flight_page import flight_page
+        from ffsr_plan.display.web.browser import serve
+
+        page = flight_page(self._flown(), text("title", title))
+        return serve(page, port, block, open_browser)
 
     def _flown(self) -> FlownProblem:
         from ffsr_plan.display.flights.flight_samples import FlownProblem

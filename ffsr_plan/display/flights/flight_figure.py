@@ -17,14 +17,14 @@ from ffsr_plan.display.flights.flight_samples import (
     instants,
     sample_flight,
 )
-from ffsr_plan.display.flights.quantities import QUANTITIES, Quantity, quantities
+from ffsr_plan.display.flights.quantities import QUANTITIES, quantities
 from ffsr_plan.display.path_drawing import (
     draw_obstacles,
     draw_silhouettes,
     mark_ends,
     name_directions,
 )
-from ffsr_plan.display.picture_data import drawn_solid
+from ffsr_plan.display.picture_data import Quantity, drawn_solid
 from ffsr_plan.display.projection import view_axes
 
 if TYPE_CHECKING:

@@ -2,60 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.display.flights.flight_samples import FlightSamples, FlownProblem
+from ffsr_plan.display.picture_data import Curve, Quantity
 
 QUANTITIES = ("speed", "thrust", "joints", "slides", "attitude", "wheels", "clearance")
 """Names of all quantities, in the order in which they are shown."""
 _LEAST_RATE = 1e-9  # [rad/s or m/s] below which a joint does not move
 _LEAST_ROTATION = 0.05  # [degrees] below which a component is not shown, if another one is larger
 _SMALL = 0.1  # [m/s^2] below which accelerations are written in mm/s^2
-
-
-class Curve(NamedTuple):
-    """One curve over time.
-
-    Attributes:
-        name: by which users name it, for example a joint.
-        label: in the legend.
-        values: (N,) in the unit of its quantity.
-    """
-
-    name: str
-    label: str
-    values: Array
-
-
-class Quantity(NamedTuple):
-    """Curves of one kind that are drawn over each other.
-
-    Attributes:
-        name: one of `QUANTITIES`.
-        title: what it is.
-        unit: of the values and limits.
-        curves: at least one.
-        limits: positive numbers that the values keep; also negative values, if there are any.
-    """
-
-    name: str
-    title: str
-    unit: str
-    curves: list[Curve]
-    limits: list[float]
-
-    @property
-    def peak(self) -> float:
-        """Largest value without its sign."""
-        return max(float(np.max(np.abs(curve.values), initial=0.0)) for curve in self.curves)
-
-    @property
-    def signed(self) -> bool:
-        """Whether a value is negative."""
-        return any(float(np.min(curve.values, initial=0.0)) < 0.0 for curve in self.curves)
 
 
 def quantities(flown: FlownProblem, samples: FlightSamples) -> list[Quantity]:
