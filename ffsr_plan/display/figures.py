@@ -18,8 +18,8 @@ from ffsr_plan.display.path_drawing import (
     mark_ends,
     name_directions,
 )
-from ffsr_plan.display.picture_data import drawn_solid, motion_frames, trail_segments
-from ffsr_plan.display.projection import VIEWS, view_axes
+from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames, trail_segments
+from ffsr_plan.display.scenes.projection import VIEWS, view_axes
 from ffsr_plan.display.spatial_figure import spatial_figure
 from ffsr_plan.search.records import Trails
 

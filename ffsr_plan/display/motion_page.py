@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.display.meshcat_objects import CommandLog, MeshcatNode
-from ffsr_plan.display.picture_data import (
+from ffsr_plan.display.scenes.meshcat_objects import CommandLog, MeshcatNode
+from ffsr_plan.display.scenes.picture_data import (
     MotionFrames,
     Quantity,
     drawn_solid,
     trail_segments,
 )
-from ffsr_plan.display.projection import view_axes
-from ffsr_plan.display.scene_objects import (
+from ffsr_plan.display.scenes.projection import view_axes
+from ffsr_plan.display.scenes.scene_objects import (
     TIPS,
     TRACK,
     add_ends,

@@ -15,9 +15,14 @@ from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.core.text_files import write_files
-from ffsr_plan.display.picture_data import MotionFrames, drawn_solid, motion_frames, trail_segments
-from ffsr_plan.display.projection import VIEWS, Outline, outlines, view_axes, visible_shapes
-from ffsr_plan.display.scene_objects import TIPS, TRACK, glow
+from ffsr_plan.display.scenes.picture_data import (
+    MotionFrames,
+    drawn_solid,
+    motion_frames,
+    trail_segments,
+)
+from ffsr_plan.display.scenes.projection import VIEWS, Outline, outlines, view_axes, visible_shapes
+from ffsr_plan.display.scenes.scene_objects import TIPS, TRACK, glow
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

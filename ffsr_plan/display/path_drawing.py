@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ffsr_plan.display.figure_style import Style
-from ffsr_plan.display.picture_data import MotionFrames
-from ffsr_plan.display.projection import STILL, VIEWS, outlines
+from ffsr_plan.display.scenes.picture_data import MotionFrames
+from ffsr_plan.display.scenes.projection import STILL, VIEWS, outlines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

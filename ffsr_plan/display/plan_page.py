@@ -17,7 +17,7 @@ from ffsr_plan.display.motion_page import (
     PlayedMotion,
     motion_page,
 )
-from ffsr_plan.display.picture_data import Curve, MotionFrames, Quantity, motion_frames
+from ffsr_plan.display.scenes.picture_data import Curve, MotionFrames, Quantity, motion_frames
 
 if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array, IntArray

@@ -13,7 +13,7 @@ import numpy as np
 
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display.path_drawing import NUMBERED, mark_ends
-from ffsr_plan.display.projection import hull_points, view_axes
+from ffsr_plan.display.scenes.projection import hull_points, view_axes
 
 if TYPE_CHECKING:
     import pinocchio as pin
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from ffsr_plan.core.arrays import Array, Flags
     from ffsr_plan.display.figure_style import Style
-    from ffsr_plan.display.picture_data import MotionFrames
+    from ffsr_plan.display.scenes.picture_data import MotionFrames
     from ffsr_plan.problem.problem import Problem
 
 _TURN, _ELEVATION = 68.0, 28.0  # of the viewer from the direction of the path, from the plane [deg]

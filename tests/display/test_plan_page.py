@@ -11,8 +11,8 @@ import umsgpack
 
 import ffsr_plan as fp
 from ffsr_plan.display import figures
-from ffsr_plan.display.picture_data import motion_frames, near_track
 from ffsr_plan.display.plan_page import page
+from ffsr_plan.display.scenes.picture_data import motion_frames, near_track
 from tests.helpers import chromium
 from tests.helpers.picture_measures import colours_and_edges
 

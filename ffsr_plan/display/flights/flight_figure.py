@@ -24,8 +24,8 @@ from ffsr_plan.display.path_drawing import (
     mark_ends,
     name_directions,
 )
-from ffsr_plan.display.picture_data import Quantity, drawn_solid
-from ffsr_plan.display.projection import view_axes
+from ffsr_plan.display.scenes.picture_data import Quantity, drawn_solid
+from ffsr_plan.display.scenes.projection import view_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

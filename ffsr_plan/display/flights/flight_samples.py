@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.rotations import rotation_vector
-from ffsr_plan.display.picture_data import MotionFrames, motion_frames
+from ffsr_plan.display.scenes.picture_data import MotionFrames, motion_frames
 from ffsr_plan.dynamics.inverse_dynamics import States
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.trajectory.flight_limits import FlightLimits

@@ -6,7 +6,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.display.flights.flight_samples import FlightSamples, FlownProblem
-from ffsr_plan.display.picture_data import Curve, Quantity
+from ffsr_plan.display.scenes.picture_data import Curve, Quantity
 
 QUANTITIES = ("speed", "thrust", "joints", "slides", "attitude", "wheels", "clearance")
 """Names of all quantities, in the order in which they are shown."""

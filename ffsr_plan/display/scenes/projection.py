@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.display.picture_data import MotionFrames
+from ffsr_plan.display.scenes.picture_data import MotionFrames
 from ffsr_plan.lattice.layered_lattice import path_frame
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot

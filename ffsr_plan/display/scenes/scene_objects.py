@@ -9,8 +9,8 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array, Flags
-from ffsr_plan.display.meshcat_objects import MeshcatNode, instances, ribbon, solids
-from ffsr_plan.display.projection import view_axes, visible_shapes
+from ffsr_plan.display.scenes.meshcat_objects import MeshcatNode, instances, ribbon, solids
+from ffsr_plan.display.scenes.projection import view_axes, visible_shapes
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
