@@ -94,6 +94,47 @@ class FlightPictures:
         target = checked_path("path", path)
         write_text("page", target, flight_page(self._flown(), text("title", title)))
 
+    def write_gif(
+        self, path: str | Path, *, speed: float | None = None, width: int = 720, view: str = "path"
+    ) -> None:
+        """Write the flight as an animated GIF; see `write_movie`.
+
+        Args:
+            path: of the file, `.gif`; an existing file is replaced.
+            speed: how many times as fast as the flight.
+            width: of the picture [px].
+            view: `path` or `side`.
+
+        Raises:
+            InvalidInput: an argument that is not allowed, or a file that cannot be written.
+        """
+        from ffsr_plan.display.flights.flight_movie import write_flight_movie
+
+        write_flight_movie(self._flown(), path, (".gif",), speed=speed, width=width, view=view)
+
+    def write_movie(
+        self, path: str | Path, *, speed: float | None = None, width: int = 720, view: str = "path"
+    ) -> None:
+        """Write the flight as an animated GIF or PNG, or as MP4 where the program ffmpeg is.
+
+        It has 12.5 pictures a second. Below the scene are a close-up with the rotation of the base,
+        the time, and speed and thrust over time. The title states the speed.
+
+        Args:
+            path: of the file, `.gif`, `.png` or `.mp4`; an existing file is replaced.
+            speed: how many times as fast as the flight, 1 for true time; by default the least of
+                1, 2, 5, 10, ... at which it takes 12 s at most.
+            width: of the picture [px].
+            view: `path`, seen along the normal y' of the path frame, or `side`, along x'.
+
+        Raises:
+            InvalidInput: an argument that is not allowed, a file that cannot be written, or MP4
+                without ffmpeg.
+        """
+        from ffsr_plan.display.flights.flight_movie import write_flight_movie
+
+        write_flight_movie(self._flown(), path, speed=speed, width=width, view=view)
+
     def show(
         self,
         port: int = 0,
