@@ -72,7 +72,7 @@ def test_the_title_states_the_speed_and_the_curves_their_peaks(flight, speed, st
     assert [curve.label.split(", ")[0] for curve in scene.curves] == [
         "speed of the base", "thrust / mass",
     ]  # fmt: skip
-    assert scene.curves[1].label.endswith("up to 10 mm/s²")
+    assert scene.curves[1].label.endswith("up to 9.99 mm/s²")
     end = f"{flight.duration:.0f}"
     assert [row[0].text for row in scene.words][::4] == [f"0 of {end} s", f"{end} of {end} s"]
 
