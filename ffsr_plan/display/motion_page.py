@@ -73,6 +73,7 @@ class PlayedMotion(NamedTuple):
         subtitle: below it.
         plan: whose trails are drawn; None for none.
         playing: whether the motion starts by itself.
+        shapes: of the robot, see `visible_shapes`.
     """
 
     problem: Problem
@@ -84,6 +85,7 @@ class PlayedMotion(NamedTuple):
     subtitle: str
     plan: PlanData | None = None
     playing: bool = False
+    shapes: str = "visual"
 
 
 def motion_page(played: PlayedMotion) -> str:
@@ -97,7 +99,8 @@ def motion_page(played: PlayedMotion) -> str:
     view = set_up(viewer, problem, centers, radii)
     solid = drawn_solid(problem.scene, centers)
     add_obstacles(viewer["obstacles"], problem.scene, solid)
-    add_ends(viewer, problem.robot, frames.configurations[0], frames.configurations[-1])
+    start, goal = frames.configurations[[0, -1]]
+    add_ends(viewer, problem.robot, start, goal, played.shapes)
     _add_tracks(viewer, problem, frames, plan)
     _animate(viewer, frames, played.axis.seconds)
     ants = plan is not None and isinstance(plan.trails, Trails) and len(plan.trails.layer) > 0

@@ -89,22 +89,28 @@ class MovingScene(NamedTuple):
     ring: float | None = None
 
 
-def robot_outlines(frames: MotionFrames, axes: Array) -> list[list[Outline]]:
-    """Outlines of the robot in each frame, seen along the view axes (3, 3), those in front last."""
-    shapes = visible_shapes(frames.robot)
+def robot_outlines(frames: MotionFrames, axes: Array, shapes: str) -> list[list[Outline]]:
+    """Outlines of the robot in each frame, those in front last.
+
+    Args:
+        frames: poses of the robot's links.
+        axes: (3, 3) view axes.
+        shapes: which are shown, see `visible_shapes`.
+    """
+    visible = visible_shapes(frames.robot, shapes)
     return [
-        sorted(outlines(shapes, frames, row, axes), key=lambda outline: outline.height)
+        sorted(outlines(visible, frames, row, axes), key=lambda outline: outline.height)
         for row in range(len(frames.configurations))
     ]
 
 
-def fixed_colours(problem: Problem) -> Array:
+def fixed_colours(problem: Problem, shapes: str) -> Array:
     """(n, 3) colours that a palette has to hold, in [0, 1]."""
     from matplotlib.colors import to_rgb
 
     named = (_BACKGROUND, TEXT, STRONG, CLEARANCE, CONTACT, _START, _GOAL, ATTITUDE)
     colours = [to_rgb(colour) for colour in named] + [TRACK, TIPS]
-    colours += [tuple(shape.meshColor[:3]) for shape in visible_shapes(problem.robot)]
+    colours += [tuple(shape.meshColor[:3]) for shape in visible_shapes(problem.robot, shapes)]
     return np.array(colours)
 
 

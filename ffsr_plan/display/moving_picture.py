@@ -27,7 +27,7 @@ from ffsr_plan.display.movie_frames import (
     robot_outlines,
 )
 from ffsr_plan.display.scenes.picture_data import motion_frames, trail_segments
-from ffsr_plan.display.scenes.projection import VIEWS, view_axes
+from ffsr_plan.display.scenes.projection import SHAPES, VIEWS, view_axes
 
 if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array
@@ -37,7 +37,13 @@ _FRAME_TIME = 80  # duration of a frame [ms]
 
 
 def write_gif(
-    plan: PlanData, path: str | Path, *, frames: int = 60, width: int = 720, view: str = "path"
+    plan: PlanData,
+    path: str | Path,
+    *,
+    frames: int = 60,
+    width: int = 720,
+    view: str = "path",
+    shapes: str = "visual",
 ) -> None:
     """Write a plan as an animated GIF that repeats for ever.
 
@@ -52,6 +58,7 @@ def write_gif(
         frames: number of pictures, at equal steps of the path parameter.
         width: of the picture [px].
         view: `path`, seen along the normal y' of the path frame, or `side`, along the lateral x'.
+        shapes: of the robot, `visual` or `collision`; of meshes their convex outlines are drawn.
 
     Raises:
         InvalidInput: an argument that is not allowed, or a file that cannot be written.
@@ -62,11 +69,12 @@ def write_gif(
     size = {"frames": count, "pixels": pixels * round(ASPECTS[1] * pixels + PANEL)}
     check_memory("frames", size, BYTES_PER_PIXEL, "fewer frames or a smaller width")
     rows = list(VIEWS[one_of("view", view, tuple(VIEWS))])
-    scene = _scene(plan, count, view_axes(plan.problem)[rows])
-    write_movie(target, pictures(scene, pixels), _FRAME_TIME, fixed_colours(plan.problem))
+    scene = _scene(plan, count, view_axes(plan.problem)[rows], one_of("shapes", shapes, SHAPES))
+    colours = fixed_colours(plan.problem, shapes)
+    write_movie(target, pictures(scene, pixels), _FRAME_TIME, colours)
 
 
-def _scene(plan: PlanData, count: int, axes: Array) -> MovingScene:
+def _scene(plan: PlanData, count: int, axes: Array, shapes: str) -> MovingScene:
     """Everything that `count` frames show, seen along the view axes (3, 3)."""
     problem, least = plan.problem, plan.certificate.least_clearance
     frames = motion_frames(problem.robot, plan.at(np.linspace(0.0, 1.0, count)))
@@ -78,7 +86,7 @@ def _scene(plan: PlanData, count: int, axes: Array) -> MovingScene:
         title=f"{problem.robot.name}, {problem.mode}",
         frames=frames,
         axes=axes,
-        robot=robot_outlines(frames, axes),
+        robot=robot_outlines(frames, axes, shapes),
         curves=[PanelCurve(clearances, levels, style.CLEARANCE)],
         words=_words(plan, frames.configurations[:, 3:7], clearances),
         trails=trail_segments(plan),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
@@ -18,6 +19,7 @@ from ffsr_plan.display.motion_page import (
     motion_page,
 )
 from ffsr_plan.display.scenes.picture_data import Curve, MotionFrames, Quantity, motion_frames
+from ffsr_plan.display.scenes.projection import SHAPES
 
 if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array, IntArray
@@ -29,7 +31,7 @@ _MOST_FRAMES = 4000
 _LEAST_TURN = 1e-9  # [rad or m] below which a joint does not move
 
 
-def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
+def page(plan: PlanData, title: str = "", *, playing: bool = False, shapes: str = "visual") -> str:
     """HTML text of a page that shows a plan in three dimensions and needs no network.
 
     The page plots clearance, rotation of the base and joints along the motion, plays on a click or
@@ -40,6 +42,7 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
         plan: the plan.
         title: heading; by default the robot and the mode.
         playing: whether the motion starts by itself.
+        shapes: of the robot, `visual` or `collision`.
 
     Returns:
         The text. Equal plans give equal text.
@@ -60,6 +63,7 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False) -> str:
         subtitle=_summary(plan),
         plan=plan,
         playing=playing,
+        shapes=one_of("shapes", shapes, SHAPES),
     )
     return motion_page(played)
 

@@ -160,12 +160,13 @@ class Plan(PlanData):
         check_memory("samples", size, BYTES_PER_CELL, "fewer samples")
         write_csv(target, path_table(self.motion, np.linspace(0.0, 1.0, rows)))
 
-    def write_html(self, path: str | Path, title: str = "") -> None:
+    def write_html(self, path: str | Path, title: str = "", *, shapes: str = "visual") -> None:
         """Write one self-contained page that shows the motion; it needs no network.
 
         Args:
             path: of the file; an existing file is replaced.
             title: heading; by default the robot and the mode.
+            shapes: of the robot: `visual`, with meshes where its URDF has them, or `collision`.
 
         Raises:
             InvalidInput: a path or title that is none, or a file that cannot be written.
@@ -173,10 +174,16 @@ class Plan(PlanData):
         from ffsr_plan.display.plan_page import page
 
         target = checked_path("path", path)
-        write_text("page", target, page(self, text("title", title)))
+        write_text("page", target, page(self, text("title", title), shapes=shapes))
 
     def write_gif(
-        self, path: str | Path, *, frames: int = 60, width: int = 720, view: str = "path"
+        self,
+        path: str | Path,
+        *,
+        frames: int = 60,
+        width: int = 720,
+        view: str = "path",
+        shapes: str = "visual",
     ) -> None:
         """Write the motion as an animated GIF that repeats for ever.
 
@@ -185,13 +192,14 @@ class Plan(PlanData):
             frames: number of pictures, at equal steps of the path parameter.
             width: of the picture [px].
             view: `path`, seen along the normal y' of the path frame, or `side`, along x'.
+            shapes: of the robot, `visual` or `collision`; meshes as their convex outlines.
 
         Raises:
             InvalidInput: an argument that is not allowed, or a file that cannot be written.
         """
         from ffsr_plan.display.moving_picture import write_gif
 
-        write_gif(self, path, frames=frames, width=width, view=view)
+        write_gif(self, path, frames=frames, width=width, view=view, shapes=shapes)
 
     def show(
         self,
@@ -200,6 +208,7 @@ class Plan(PlanData):
         block: bool | None = None,
         open_browser: bool | None = None,
         title: str = "",
+        shapes: str = "visual",
     ) -> PageServer:
         """Show the page of `write_html`, served on 127.0.0.1 by this process; in notebooks too.
 
@@ -210,6 +219,7 @@ class Plan(PlanData):
             open_browser: whether to open the user's browser; by default unless in a notebook, where
                 the page appears as a frame below the cell.
             title: as for `write_html`.
+            shapes: as for `write_html`.
 
         Returns:
             The server, with its `url`; `stop()`, or the end of a `with` block, ends it.
@@ -220,7 +230,8 @@ class Plan(PlanData):
         from ffsr_plan.display.plan_page import page
         from ffsr_plan.display.web.browser import serve
 
-        return serve(page(self, text("title", title)), port, block, open_browser)
+        shown = page(self, text("title", title), shapes=shapes)
+        return serve(shown, port, block, open_browser)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.checks import text
@@ -78,12 +78,13 @@ class FlightPictures:
         target = checked_path("path", path, *FORMATS)
         write_figure(self.figure(), target)
 
-    def write_html(self, path: str | Path, title: str = "") -> None:
+    def write_html(self, path: str | Path, title: str = "", *, shapes: str = "visual") -> None:
         """Write one self-contained page that plays the flight in true time; it needs no network.
 
         Args:
             path: of the file; an existing file is replaced.
             title: heading; by default the robot and the mode.
+            shapes: of the robot: `visual`, with meshes where its URDF has them, or `collision`.
 
         Raises:
             InvalidInput: a path or title that is none, or a file that cannot be written.
@@ -92,10 +93,16 @@ class FlightPictures:
         from ffsr_plan.display.flights.flight_page import flight_page
 
         target = checked_path("path", path)
-        write_text("page", target, flight_page(self._flown(), text("title", title)))
+        write_text("page", target, flight_page(self._flown(), text("title", title), shapes=shapes))
 
     def write_gif(
-        self, path: str | Path, *, speed: float | None = None, width: int = 720, view: str = "path"
+        self,
+        path: str | Path,
+        *,
+        speed: float | None = None,
+        width: int = 720,
+        view: str = "path",
+        shapes: str = "visual",
     ) -> None:
         """Write the flight as an animated GIF; see `write_movie`.
 
@@ -104,16 +111,24 @@ class FlightPictures:
             speed: how many times as fast as the flight.
             width: of the picture [px].
             view: `path` or `side`.
+            shapes: of the robot, `visual` or `collision`.
 
         Raises:
             InvalidInput: an argument that is not allowed, or a file that cannot be written.
         """
         from ffsr_plan.display.flights.flight_movie import write_flight_movie
 
-        write_flight_movie(self._flown(), path, (".gif",), speed=speed, width=width, view=view)
+        look: dict[str, Any] = {"width": width, "view": view, "shapes": shapes}
+        write_flight_movie(self._flown(), path, (".gif",), speed=speed, **look)
 
     def write_movie(
-        self, path: str | Path, *, speed: float | None = None, width: int = 720, view: str = "path"
+        self,
+        path: str | Path,
+        *,
+        speed: float | None = None,
+        width: int = 720,
+        view: str = "path",
+        shapes: str = "visual",
     ) -> None:
         """Write the flight as an animated GIF or PNG, or as MP4 where the program ffmpeg is.
 
@@ -126,6 +141,7 @@ class FlightPictures:
                 1, 2, 5, 10, ... at which it takes 12 s at most.
             width: of the picture [px].
             view: `path`, seen along the normal y' of the path frame, or `side`, along x'.
+            shapes: of the robot, `visual` or `collision`; meshes as their convex outlines.
 
         Raises:
             InvalidInput: an argument that is not allowed, a file that cannot be written, or MP4
@@ -133,7 +149,8 @@ class FlightPictures:
         """
         from ffsr_plan.display.flights.flight_movie import write_flight_movie
 
-        write_flight_movie(self._flown(), path, speed=speed, width=width, view=view)
+        look: dict[str, Any] = {"width": width, "view": view, "shapes": shapes}
+        write_flight_movie(self._flown(), path, speed=speed, **look)
 
     def show(
         self,
@@ -142,6 +159,7 @@ class FlightPictures:
         block: bool | None = None,
         open_browser: bool | None = None,
         title: str = "",
+        shapes: str = "visual",
     ) -> PageServer:
         """Show the page of `write_html`, served on 127.0.0.1 by this process; in notebooks too.
 
@@ -151,6 +169,7 @@ class FlightPictures:
             open_browser: whether to open the user's browser; by default unless in a notebook, where
                 the page appears as a frame below the cell.
             title: as for `write_html`.
+            shapes: as for `write_html`.
 
         Returns:
             The server, with its `url`; `stop()`, or the end of a `with` block, ends it.
@@ -161,7 +180,7 @@ class FlightPictures:
         from ffsr_plan.display.flights.flight_page import flight_page
         from ffsr_plan.display.web.browser import serve
 
-        page = flight_page(self._flown(), text("title", title))
+        page = flight_page(self._flown(), text("title", title), shapes=shapes)
         return serve(page, port, block, open_browser)
 
     def _flown(self) -> FlownProblem:

@@ -31,7 +31,7 @@ from ffsr_plan.display.movie_frames import (
     pictures,
     robot_outlines,
 )
-from ffsr_plan.display.scenes.projection import VIEWS, view_axes
+from ffsr_plan.display.scenes.projection import SHAPES, VIEWS, view_axes
 
 STEP = 80  # [ms] between two pictures
 _MOST_FRAMES = 1200
@@ -48,6 +48,7 @@ def write_flight_movie(
     speed: float | None = None,
     width: int = 720,
     view: str = "path",
+    shapes: str = "visual",
 ) -> None:
     """Write a flight as a moving picture; see `FlightPictures.write_movie`.
 
@@ -58,6 +59,7 @@ def write_flight_movie(
         speed: how many times as fast as the flight; None for one that takes at most 12 s.
         width: of the picture [px].
         view: `path` or `side`.
+        shapes: of the robot, `visual` or `collision`.
 
     Raises:
         InvalidInput: an argument that is not allowed, or a file that cannot be written.
@@ -71,8 +73,10 @@ def write_flight_movie(
     size = {"frames": len(times), "pixels": pixels * round(ASPECTS[1] * pixels + PANEL)}
     check_memory("speed", size, BYTES_PER_PIXEL, "a higher speed or a smaller width")
     samples = sample_flight(flown, times)
-    scene = _scene(flown, samples, view_axes(flown.problem)[rows], pace)
-    write_movie(target, pictures(scene, pixels), STEP, fixed_colours(flown.problem))
+    scene = _scene(
+        flown, samples, view_axes(flown.problem)[rows], pace, one_of("shapes", shapes, SHAPES)
+    )
+    write_movie(target, pictures(scene, pixels), STEP, fixed_colours(flown.problem, shapes))
 
 
 def _speed(duration: float, speed: float | None) -> float:
@@ -93,17 +97,19 @@ def _times(duration: float, speed: float) -> Array:
     return np.append(np.arange(0.0, duration - 0.5 * step, step), duration)
 
 
-def _scene(flown: FlownProblem, samples: FlightSamples, axes: Array, speed: float) -> MovingScene:
+def _scene(
+    flown: FlownProblem, samples: FlightSamples, axes: Array, speed: float, shapes: str = "visual"
+) -> MovingScene:
     """Everything that the frames show, seen along the view axes (3, 3)."""
     found = {quantity.name: quantity for quantity in quantities(flown, samples)}
     dense = sample_flight(flown, instants(flown.flight, _PEAK_STEPS))
-    peaks = {quantity.name: quantity.peak for quantity in quantities(flown, dense)}
+    peaks = {each.name: f"{each.peak:.3g} {each.unit}" for each in quantities(flown, dense)}
     curves = []
     for name, colour in (("speed", style.CLEARANCE), ("thrust", style.ATTITUDE)):
         if name in found:
             quantity = found[name]
             levels = [(0.0, style.TEXT), *((limit, style.CONTACT) for limit in quantity.limits)]
-            label = f"{quantity.title}, up to {peaks[name]:.3g} {quantity.unit}"
+            label = f"{quantity.title}, up to {peaks[name]}"
             curves.append(PanelCurve(quantity.curves[0].values, levels, colour, label))
     pace = "true time" if speed == 1.0 else f"{speed:g} × true time"
     return MovingScene(
@@ -111,7 +117,7 @@ def _scene(flown: FlownProblem, samples: FlightSamples, axes: Array, speed: floa
         title=f"{flown.heading()}, {pace}",
         frames=samples.frames,
         axes=axes,
-        robot=robot_outlines(samples.frames, axes),
+        robot=robot_outlines(samples.frames, axes, shapes),
         curves=curves,
         words=_words(flown, samples),
     )

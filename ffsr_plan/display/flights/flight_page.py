@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.display.flights.flight_samples import FlownProblem, sample_flight
 from ffsr_plan.display.flights.quantities import quantities
@@ -15,12 +16,15 @@ from ffsr_plan.display.motion_page import (
     PlayedMotion,
     motion_page,
 )
+from ffsr_plan.display.scenes.projection import SHAPES
 
 _FRAMES, _MOST_FRAMES = 600, 4000
 _PATIENCE = 60.0  # [s] in which a flight is played at first
 
 
-def flight_page(flown: FlownProblem, title: str = "", *, playing: bool = False) -> str:
+def flight_page(
+    flown: FlownProblem, title: str = "", *, playing: bool = False, shapes: str = "visual"
+) -> str:
     """HTML text of a page that plays a flight, with plots of its quantities over time.
 
     `#t=30` at the end of its address opens it at that time [s]. Flights of up to a minute begin in
@@ -30,6 +34,7 @@ def flight_page(flown: FlownProblem, title: str = "", *, playing: bool = False) 
         flown: the flight and its problem.
         title: heading; by default the robot and the mode.
         playing: whether the motion starts by itself.
+        shapes: of the robot, `visual` or `collision`.
 
     Returns:
         The text. Equal flights give equal text.
@@ -49,6 +54,7 @@ def flight_page(flown: FlownProblem, title: str = "", *, playing: bool = False) 
         title=title or flown.heading(),
         subtitle=flown.summary(),
         playing=playing,
+        shapes=one_of("shapes", shapes, SHAPES),
     )
     return motion_page(played)
 

@@ -18,6 +18,7 @@ from ffsr_plan.robots.robot import SpaceRobot
 STILL = 1e-9  # distance [m] of start and goal below which the base stays on the spot
 VIEWS = {"path": (0, 1, 2), "side": (0, 2, 1)}
 """Rows of the view axes that point to the right, upwards and towards the viewer."""
+SHAPES = ("visual", "collision")
 _LEAST_RADIUS = 0.02  # of drawn spheres and capsules [m], so that points are visible
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
 _RING = np.column_stack([np.cos(_CIRCLE), np.sin(_CIRCLE)])
@@ -52,8 +53,16 @@ def view_axes(problem: Problem) -> Array:
     return np.array([frame[:, 2], frame[:, 0], frame[:, 1]])
 
 
-def visible_shapes(robot: SpaceRobot) -> list[pin.GeometryObject]:
-    """Visual shapes of all links, and the collision shapes of links that have no visual ones."""
+def visible_shapes(robot: SpaceRobot, shapes: str = "visual") -> list[pin.GeometryObject]:
+    """Shapes of a robot that pictures show.
+
+    Args:
+        robot: the robot.
+        shapes: `visual` for the visual shapes of all links, meshes included, and the collision
+            shapes of links that have no visual ones; `collision` for all collision shapes.
+    """
+    if shapes == "collision":
+        return list(robot.collision_model.geometryObjects)
     visible = list(robot.visual_model.geometryObjects)
     links = {shape.parentFrame for shape in visible}
     return visible + [

@@ -78,25 +78,34 @@ def add_obstacles(viewer: MeshcatNode, scene: Scene, drawn_solid: Flags) -> None
             viewer[name].set_object(spheres)
 
 
-def add_ends(viewer: MeshcatNode, robot: SpaceRobot, start: Array, goal: Array) -> None:
+def add_ends(
+    viewer: MeshcatNode, robot: SpaceRobot, start: Array, goal: Array, shapes: str = "visual"
+) -> None:
     """Add the robot at the start (nq,), and transparent copies of it at start and goal (nq,)."""
-    add_robot(viewer["robot"], robot, start)
+    add_robot(viewer["robot"], robot, start, shapes=shapes)
     for name, colour, q in (("start", START, start), ("goal", GOAL, goal)):
-        add_robot(viewer["ghosts"][name], robot, q, colour)
+        add_robot(viewer["ghosts"][name], robot, q, colour, shapes)
 
 
-def add_robot(viewer: MeshcatNode, robot: SpaceRobot, q: Array, ghost: int | None = None) -> None:
+def add_robot(
+    viewer: MeshcatNode,
+    robot: SpaceRobot,
+    q: Array,
+    ghost: int | None = None,
+    shapes: str = "visual",
+) -> None:
     """Add a robot, one meshcat node for each joint and below it the shapes of its link.
 
     Args:
         viewer: the node that receives the robot.
-        robot: its visual shapes are shown, of a link without any its collision shapes.
+        robot: the robot.
         q: (nq,) configuration.
         ghost: colour 0xRRGGBB of a transparent copy; by default the robot's own colours.
+        shapes: which are shown, see `visible_shapes`.
     """
     import meshcat.geometry as mg
 
-    for k, shape in enumerate(visible_shapes(robot)):
+    for k, shape in enumerate(visible_shapes(robot, shapes)):
         red, green, blue, _ = (round(255 * float(c)) for c in shape.meshColor)
         material = (
             mg.MeshPhongMaterial(color=(red << 16) + (green << 8) + blue, shininess=50)

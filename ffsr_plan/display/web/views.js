@@ -25,7 +25,7 @@ function choose(name) {
   const near = follow.checked, base = toScene(basePose(position).slice(0, 3));
   followed = near ? base : null;
   if (name === "body") ride(position);
-  else if (near) look(sides[name], base, box(Array(3).fill(4.4 * data.body.size)));
+  else if (near) look(sides[name], base, box(Array(3).fill(2.2 * data.body.size)));
   else look(sides[name], [0, 0, 0], box(data.view.size));
 }
 fit = () => choose(named);
