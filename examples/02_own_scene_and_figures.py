@@ -33,8 +33,8 @@ def main() -> None:
 
     figure = Figure(figsize=(13.0, 4.6), layout="constrained")
     left, right = figure.subplots(1, 2)
-    path_figure(plan, axes=left)
-    clearance_figure(plan, axes=right)
+    path_figure(plan, ax=left)
+    clearance_figure(plan, ax=right)
     figure.savefig("own_scene.png", dpi=120)
 
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ffsr_plan.curves.curved_motion import CurvedMotion
     from ffsr_plan.curves.smooth_curve import CurvePoints, SmoothCurve
     from ffsr_plan.display.live.live_view import LiveView
-    from ffsr_plan.display.page_server import PageServer
+    from ffsr_plan.display.web.page_server import PageServer
     from ffsr_plan.dynamics import momentum
     from ffsr_plan.dynamics.actuation_mode import Mode
     from ffsr_plan.dynamics.inverse_dynamics import States
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from ffsr_plan.lattice.layered_lattice import LayeredLattice
     from ffsr_plan.lattice.roadmap import Roadmap
     from ffsr_plan.planning.certified_plan import Plan
+    from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.planning.plan_and_refine import plan, refine
     from ffsr_plan.planning.smooth_plan import SmoothPlan
     from ffsr_plan.planning.warm_up import warm_up
@@ -93,8 +94,6 @@ if TYPE_CHECKING:
         Trails,
         TreeCycle,
     )
-    from ffsr_plan.smooth_flight.smooth_flight import SmoothFlight
-    from ffsr_plan.trajectory.timed_plan import TimedPlan
     from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.verify import Report
 
@@ -220,7 +219,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "curves.curved_motion": ("CurvedMotion",),
     "curves.smooth_curve": ("CurvePoints", "SmoothCurve"),
     "display.live.live_view": ("LiveView",),
-    "display.page_server": ("PageServer",),
+    "display.web.page_server": ("PageServer",),
     "dynamics.actuation_mode": ("Mode",),
     "dynamics.inverse_dynamics": ("States",),
     "dynamics.motion": ("Motion",),
@@ -232,6 +231,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "lattice.layered_lattice": ("LayeredLattice",),
     "lattice.roadmap": ("Roadmap",),
     "planning.certified_plan": ("Plan",),
+    "planning.flights": ("SmoothFlight", "TimedPlan"),
     "planning.plan_and_refine": ("plan", "refine"),
     "planning.smooth_plan": ("SmoothPlan",),
     "planning.warm_up": ("warm_up",),
@@ -267,8 +267,6 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "Trails",
         "TreeCycle",
     ),
-    "smooth_flight.smooth_flight": ("SmoothFlight",),
-    "trajectory.timed_plan": ("TimedPlan",),
     "tree_search.tree_planner": ("TreePlanner",),
     "verification.verify": ("Report",),
 }

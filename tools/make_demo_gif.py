@@ -1,6 +1,6 @@
 """Write the moving picture of the README.
 
-It shows the plan of the scenario `fig2a`, found by the default planner with seed 0 and refined.
+It shows a flight of the scenario `fig2a`, planned by the default planner with seed 0 and refined.
 
 `python -m tools.make_demo_gif docs/demo.gif`
 """
@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import sys
 
-import ffsr_plan as fp
-from ffsr_plan.display.moving_picture import write_gif
+from tools.make_flight_figure import demo_flight
 
 
 def main(path: str) -> None:
-    """Plan `fig2a` and write its moving picture to a file."""
-    write_gif(fp.plan(fp.load_scenario("fig2a"), seed=0), path)
+    """Plan and time `fig2a` and write its moving picture to a file."""
+    demo_flight().write_gif(path)
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ _SEEN = (0.18, 0.0, 0.78, 1.0)  # part of the window: left, top, right, bottom
 _VIEW = """
 for (const panel of document.querySelectorAll(".panel")) panel.style.display = "none";
 viewer.set_property(["meshcat", "ghosts"], "visible", false);
+viewer.camera.clearViewOffset();
 viewer.camera.position.set(-0.8, 1.0, 1.9);
 viewer.controls.target.set(0.1, 0.1, 0);
 viewer.controls.update();

@@ -4,7 +4,7 @@ import pytest
 
 import ffsr_plan as fp
 from benchmarks.speed.reference import Reference, record
-from ffsr_plan.smooth_flight.smooth_flight import smooth_flight
+from ffsr_plan.smooth_flight.curve_flight import curve_flight
 from ffsr_plan.smooth_flight.timed_curve import pace_within
 from tests.helpers.smooth_flights import curve_of, limits_of
 
@@ -38,7 +38,7 @@ def test_fastest_pace(benchmark, curve, limits, reference):
 @pytest.mark.parametrize("duration", [None, 423.0])
 def test_smooth_flight(benchmark, curve, limits, reference, duration):
     """The whole flight, delta-v included."""
-    flight = benchmark.pedantic(lambda: smooth_flight(curve, limits, duration), rounds=20)
+    flight = benchmark.pedantic(lambda: curve_flight(curve, limits, duration), rounds=20)
     benchmark.extra_info["delta_v"] = flight.delta_v
     record(benchmark, reference)
 
@@ -46,5 +46,5 @@ def test_smooth_flight(benchmark, curve, limits, reference, duration):
 def test_limits_on_jerk(benchmark, curve, reference):
     """A dozen moving averages are tried."""
     limits = limits_of(curve, thruster_acceleration=0.01, joint_jerk=1e-3, **GIVEN)
-    benchmark.pedantic(lambda: smooth_flight(curve, limits), rounds=5)
+    benchmark.pedantic(lambda: curve_flight(curve, limits), rounds=5)
     record(benchmark, reference)

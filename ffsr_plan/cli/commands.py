@@ -38,6 +38,21 @@ Port = Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 for an
 Browser = Annotated[
     bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
 ]
+FigureFile = Annotated[
+    str | None,
+    typer.Option(metavar="PATH", help="Draw path, speed, thrust and joints: .pdf, .svg or .png."),
+]
+PageFile = Annotated[
+    str | None, typer.Option(metavar="PATH.html", help="Write a page that plays in true time.")
+]
+MovieFile = Annotated[
+    str | None,
+    typer.Option(metavar="PATH", help="Write a moving picture: .gif, .png or .mp4 (by ffmpeg)."),
+]
+MovieSpeed = Annotated[
+    float | None,
+    typer.Option("--movie-speed", help="Times as fast as the flight; by default 12 s or less."),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace existing results.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
@@ -226,6 +241,10 @@ def timed(
         str | None, typer.Option(metavar="PATH", help="Write the trajectory to this table.")
     ] = None,
     rate: Annotated[float, typer.Option(help="Rows per second of --csv.")] = 10.0,
+    figure: FigureFile = None,
+    page: PageFile = None,
+    movie: MovieFile = None,
+    speed: MovieSpeed = None,
     force: Force = False,
     quiet: Quiet = False,
     as_json: Json = False,
@@ -233,7 +252,7 @@ def timed(
     """Time a saved plan within limits: duration, delta-v, thrust, torques."""
     with errors_on_stderr():
         from ffsr_plan.cli.output import Output
-        from ffsr_plan.cli.saved_plans import time_and_report
+        from ffsr_plan.cli.saved_plans import FlightFiles, time_and_report
 
         limits = {
             "corners": corners,
@@ -249,7 +268,8 @@ def timed(
             "turn_acceleration": turn_acceleration,
             "velocity_jump": velocity_jump,
         }
-        time_and_report(plan_file, limits, csv, rate, force, Output(quiet, as_json))
+        files = FlightFiles(csv, rate, figure, page, movie, speed)
+        time_and_report(plan_file, limits, files, force, Output(quiet, as_json))
 
 
 @app.command()

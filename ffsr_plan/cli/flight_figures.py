@@ -8,8 +8,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array
-    from ffsr_plan.smooth_flight.smooth_flight import SmoothFlight
-    from ffsr_plan.trajectory.timed_plan import TimedPlan
+    from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
 
 _PEAK_SAMPLES = 10_001  # times at which peaks of a flight are taken
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ffsr_plan.cli.flight_figures import flight_figures
 from ffsr_plan.cli.plan_figures import report_figures
@@ -15,6 +15,7 @@ from ffsr_plan.core.errors import PlanNotVerified
 if TYPE_CHECKING:
     from ffsr_plan.cli.output import Output
     from ffsr_plan.planning.certified_plan import Plan
+    from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
 
 
 def verify_and_report(plan_file: str, samples: int | None, output: Output) -> None:
@@ -43,43 +44,78 @@ def verify_and_report(plan_file: str, samples: int | None, output: Output) -> No
         raise PlanNotVerified(report.problems)
 
 
+class FlightFiles(NamedTuple):
+    """Files that the command `timed` writes; None for those that it does not.
+
+    Attributes:
+        csv: table of the trajectory.
+        rate: rows per second in it.
+        figure: PDF, SVG or PNG.
+        page: HTML.
+        movie: GIF, PNG or MP4.
+        speed: of the movie, how many times as fast as the flight.
+    """
+
+    csv: str | None
+    rate: float
+    figure: str | None
+    page: str | None
+    movie: str | None
+    speed: float | None
+
+    def named(self) -> dict[str, str]:
+        """The paths that are given, by the names of their options."""
+        options = ("--csv", "--figure", "--page", "--movie")
+        paths = (self.csv, self.figure, self.page, self.movie)
+        return {name: path for name, path in zip(options, paths, strict=True) if path is not None}
+
+    def write(self, flight: SmoothFlight | TimedPlan) -> None:
+        """Write all files."""
+        if self.csv is not None:
+            flight.to_csv(self.csv, self.rate)
+        if self.figure is not None:
+            flight.write_figure(self.figure)
+        if self.page is not None:
+            flight.write_html(self.page)
+        if self.movie is not None:
+            flight.write_movie(self.movie, speed=self.speed)
+
+
 def time_and_report(
     plan_file: str,
     limits: dict[str, Any],
-    csv: str | None,
-    rate: float,
+    files: FlightFiles,
     force: bool,
     output: Output,
 ) -> None:
-    """Time a saved plan, show its figures and write its trajectory.
+    """Time a saved plan, show its figures and write its trajectory and pictures.
 
     Args:
         plan_file: path of the plan.
         limits: arguments of `Plan.timed`.
-        csv: file for the trajectory, or None.
-        rate: rows per second in it.
-        force: whether it may be replaced.
+        files: what is written.
+        force: whether files may be replaced.
         output: where the figures are shown.
 
     Raises:
         InvalidInput: no such plan, limits that are not allowed, or a file that cannot be written.
     """
-    if csv is not None:
-        check_replacement("--csv", csv, force)
+    for option, path in files.named().items():
+        check_replacement(option, path, force)
     times = StepTimes()
     plan = _loaded(plan_file, times)
     with times.step("timing", "timing"):
         flight = plan.timed(**limits)
         figures = flight_figures(flight)
-    if csv is not None:
-        with times.step("writing", "table"):
-            flight.to_csv(csv, rate)
+    if files.named():
+        with times.step("writing", "files"):
+            files.write(flight)
     output.show(
         lambda: [flight_table(figures)],
         lambda: {
             "flight": figures._asdict(),
             "times": times.seconds(),
-            "files": [] if csv is None else [csv],
+            "files": list(files.named().values()),
         },
     )
 

@@ -1,5 +1,6 @@
 """Pages, live views, figures and moving pictures of plans."""
 
+from ffsr_plan.display.figure_style import write_figure
 from ffsr_plan.display.figures import (
     clearance_figure,
     convergence_figure,
@@ -8,4 +9,11 @@ from ffsr_plan.display.figures import (
 )
 from ffsr_plan.display.moving_picture import write_gif
 
-__all__ = ["clearance_figure", "convergence_figure", "path_figure", "write_figures", "write_gif"]
+__all__ = [
+    "clearance_figure",
+    "convergence_figure",
+    "path_figure",
+    "write_figure",
+    "write_figures",
+    "write_gif",
+]

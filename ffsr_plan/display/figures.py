@@ -2,126 +2,201 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ffsr_plan.core.checks import one_of, whole_number
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.text_files import write_files
-from ffsr_plan.display.picture_data import drawn_solid, motion_frames, trail_segments
-from ffsr_plan.display.projection import outlines, view_axes
+from ffsr_plan.display import figure_style
+from ffsr_plan.display.figure_style import Named, Style, axes_or_new, figure_bytes, fit_height
+from ffsr_plan.display.path_drawing import (
+    draw_obstacles,
+    draw_silhouettes,
+    mark_ends,
+    name_directions,
+)
+from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames, trail_segments
+from ffsr_plan.display.scenes.projection import VIEWS, view_axes
+from ffsr_plan.display.spatial_figure import spatial_figure
 from ffsr_plan.search.records import Trails
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ffsr_plan.core.arrays import Array, Flags
+    from ffsr_plan.core.arrays import Array
     from ffsr_plan.plans.plan_data import PlanData
 
-_START, _GOAL, _PATH, _OBSTACLE, _ROBOT = "#2a7f9e", "#2f8f4e", "#d95f02", "#9aa0a8", "#3b4252"
-_TRAILS, _CONTACT = "#7a5fa8", "#b02a30"
 _ANTS, _TREES = "ants' trails, darker with more pheromone", "trees from start (dark) and goal"
-_NUMBERED = 30  # scenes of at most so many obstacles have their indices written in
 _SAMPLES = 401  # of the base's track
+_OF_PATH = {
+    "path": (figure_style.PATH, "base origin"),
+    "start": (figure_style.START, "start"),
+    "goal": (figure_style.GOAL, "goal"),
+    "robot": (figure_style.ROBOT, ""),
+    "obstacles": (figure_style.OBSTACLE, "obstacles near the motion"),
+    "trails": (figure_style.TRAILS, _ANTS),
+}
+_OF_CLEARANCE = {
+    "clearance": (figure_style.PATH, "along the motion"),
+    "nodes": (figure_style.ROBOT, "nodes"),
+    "contact": (figure_style.CONTACT, "contact"),
+}
+_OF_CONVERGENCE = {
+    "mean": (figure_style.OBSTACLE, "mean of the cycle"),
+    "cycle": (figure_style.START, "best of the cycle"),
+    "best": (figure_style.PATH, "best so far"),
+    "optimum": (figure_style.GOAL, "lattice optimum"),
+    "paths": (figure_style.ROBOT, "different paths"),
+}
 
 
-def path_figure(plan: PlanData, silhouettes: int = 9, axes: Axes | None = None) -> Figure:
-    """Path among the obstacles, seen along the normal y' of the path frame.
+def path_figure(
+    plan: PlanData,
+    silhouettes: int = 9,
+    ax: Axes | None = None,
+    *,
+    view: str = "path",
+    colours: Named = None,
+    labels: Named = None,
+) -> Figure:
+    """Path among the obstacles.
 
     Args:
         plan: the plan.
         silhouettes: number of robot silhouettes, at equal steps of the path parameter.
-        axes: matplotlib axes to draw on; by default those of a new figure.
+        ax: matplotlib axes to draw on, with `projection="3d"` for the view `3d`; by default those
+            of a new figure.
+        view: `path`, seen along the normal y' of the path frame, `side`, along the lateral x', or
+            `3d`, in perspective with the axes of the world.
+        colours: matplotlib colours of `path`, `start`, `goal`, `robot`, `obstacles` and `trails`.
+        labels: texts in the legend, by the same names.
 
     Returns:
         The figure of the axes. Trails of the ants are darker where more pheromone was laid.
+
+    Raises:
+        InvalidInput: a number, view, name, colour or axes that are not allowed.
     """
-    figure, axes = _axes(axes, 9.0, 4.6)
-    view, scene = view_axes(plan.problem)[:2], plan.problem.scene
-    track = motion_frames(plan.problem.robot, plan.at(np.linspace(0.0, 1.0, _SAMPLES)))
+    count = whole_number("silhouettes", silhouettes, at_least=2, at_most=100)
+    style = Style(_OF_PATH, colours, labels)
+    problem, scene = plan.problem, plan.problem.scene
+    track = motion_frames(problem.robot, plan.at(np.linspace(0.0, 1.0, _SAMPLES)))
+    rows = np.linspace(0.0, _SAMPLES - 1.0, count).round().astype(int).tolist()
     solid = drawn_solid(scene, track.bounding_spheres()[0])
-    _draw_obstacles(axes, plan, view, solid)
-    _draw_trails(axes, plan, view)
-    _draw_silhouettes(axes, plan, silhouettes)
-    axes.plot(*(track.origins[:, 0] @ view.T).T, color=_PATH, lw=1.8, zorder=6, label="base origin")
+    if one_of("view", view, (*VIEWS, "3d")) == "3d":
+        return spatial_figure(problem, track, rows, solid, style, ax, _path_title(plan))
+    axes = view_axes(problem)[list(VIEWS[view])]
+    own_figure = ax is None
+    figure, ax = axes_or_new(ax, 9.0, 4.6)
+    draw_obstacles(ax, scene, axes[:2], solid, style)
+    _draw_trails(ax, plan, axes[:2], style)
+    draw_silhouettes(ax, track, rows, axes, style)
+    across = track.origins[:, 0] @ axes[:2].T
+    ax.plot(*across.T, color=style.colour("path"), lw=1.8, zorder=6, label=style.label("path"))
+    mark_ends(ax, style)
     if not solid.all():
-        axes.plot([], [], "o", color=_OBSTACLE, label="obstacles near the motion")
-        axes.plot([], [], "o", color=_OBSTACLE, alpha=0.2, label="others")
-    axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
-    axes.set_aspect("equal")
-    axes.autoscale_view()
-    axes.margins(0.03)
-    axes.set_xlabel("along the path frame's z' [m]")
-    projected = ", projected along the normal y'" if _leaves_plane(plan) else ""
-    axes.set_ylabel(f"lateral x' [m]{projected}")
-    axes.set_title(
-        f"L = {plan.length:.2f} m, F = {plan.objective:.1f}, δ = {plan.problem.delta:g}, "
-        f"proven clearance {proven(plan.certificate.least_clearance)}"
-    )
+        grey = style.colour("obstacles")
+        ax.plot([], [], "o", color=grey, label=style.label("obstacles"))
+        ax.plot([], [], "o", color=grey, alpha=0.2, label="others")
+    name_directions(ax, problem, view, _leaves_plane(plan))
+    ax.set_title(_path_title(plan))
+    if own_figure:
+        fit_height(figure, ax)
+        figure.legend(frameon=False, loc="outside lower center", ncols=5)
+    else:
+        ax.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=5)
     return figure
 
 
 def clearance_figure(
-    plan: PlanData, samples_per_edge: int = 20, axes: Axes | None = None
+    plan: PlanData,
+    samples_per_edge: int = 20,
+    ax: Axes | None = None,
+    *,
+    colours: Named = None,
+    labels: Named = None,
 ) -> Figure:
     """Least distance between links and obstacles along the motion.
 
     Args:
         plan: the plan.
         samples_per_edge: points of the curve for each edge; the nodes are marked.
-        axes: matplotlib axes to draw on; by default those of a new figure.
+        ax: matplotlib axes to draw on; by default those of a new figure.
+        colours: matplotlib colours of `clearance`, `nodes` and `contact`.
+        labels: texts in the legend, by the same names.
 
     Returns:
         The figure of the axes.
+
+    Raises:
+        InvalidInput: a name, colour or axes that are not allowed.
     """
     from ffsr_plan.collision.distances import ObstacleQuery
 
+    style = Style(_OF_CLEARANCE, colours, labels)
     m = plan.edges
     s = np.linspace(0.0, 1.0, m * samples_per_edge + 1)
     query = ObstacleQuery(plan.problem.robot, plan.problem.obstacles)
-    figure, axes = _axes(axes, 7.0, 3.2)
-    axes.plot(s, query.distances(plan.at(s)), color=_PATH, lw=1.5, label="along the motion")
-    axes.plot(np.arange(m + 1) / m, plan.clearances, "o", ms=3.5, color=_ROBOT, label="nodes")
-    axes.axhline(0.0, color=_CONTACT, lw=1.0, label="contact")
-    axes.set_xlim(0.0, 1.0)
-    axes.set_xlabel("path parameter s")
-    axes.set_ylabel("clearance [m]")
-    axes.legend(frameon=False)
+    figure, ax = axes_or_new(ax, 7.0, 3.2)
+    curve, nodes, contact = (style.colour(name) for name in _OF_CLEARANCE)
+    ax.plot(s, query.distances(plan.at(s)), color=curve, lw=1.5, label=style.label("clearance"))
+    stations = np.arange(m + 1) / m
+    ax.plot(stations, plan.clearances, "o", ms=3.5, color=nodes, label=style.label("nodes"))
+    ax.axhline(0.0, color=contact, lw=1.0, label=style.label("contact"))
+    ax.set_xlim(0.0, 1.0)
+    ax.set_xlabel("path parameter s")
+    ax.set_ylabel("clearance [m]")
+    ax.legend(frameon=False)
     return figure
 
 
-def convergence_figure(plan: PlanData, axes: Axes | None = None) -> Figure:
+def convergence_figure(
+    plan: PlanData, ax: Axes | None = None, *, colours: Named = None, labels: Named = None
+) -> Figure:
     """Best F so far, best and mean F of each cycle, and the number of different paths.
 
     Args:
         plan: the plan.
-        axes: matplotlib axes to draw on; by default those of a new figure.
+        ax: matplotlib axes to draw on; by default those of a new figure.
+        colours: matplotlib colours of `mean` and `cycle` (mean and best F of each cycle), `best` (F
+            so far), `optimum` and `paths`.
+        labels: texts in the legend, by the same names.
 
     Returns:
         The figure of the axes.
+
+    Raises:
+        InvalidInput: a name, colour or axes that are not allowed.
     """
+    own = dict(_OF_CONVERGENCE)
+    if not plan.optimum_is_exact:
+        own["optimum"] = (own["optimum"][0], "lower bound")
+    style = Style(own, colours, labels)
+    look: dict[str, Any] = {
+        name: {"color": style.colour(name), "label": style.label(name)} for name in own
+    }
     history = plan.history
     cycles = np.arange(1, len(history.best) + 1)
-    figure, axes = _axes(axes, 8.0, 3.8)
-    axes.plot(cycles, history.mean, color=_OBSTACLE, lw=1.2, label="mean of the cycle")
-    axes.plot(cycles, history.iteration_best, color=_START, lw=1.0, label="best of the cycle")
-    axes.step(cycles, history.best, color=_PATH, lw=1.8, where="post", label="best so far")
-    name = "lattice optimum" if plan.optimum_is_exact else "lower bound"
-    axes.axhline(plan.optimum, color=_GOAL, ls="--", lw=1.0, label=name)
-    axes.set_xlabel("cycle")
-    axes.set_ylabel("F")
-    other = axes.twinx()
-    other.plot(cycles, history.distinct, ":", color=_ROBOT, lw=1.0)
+    figure, ax = axes_or_new(ax, 8.0, 3.8)
+    ax.plot(cycles, history.mean, lw=1.2, **look["mean"])
+    ax.plot(cycles, history.iteration_best, lw=1.0, **look["cycle"])
+    ax.step(cycles, history.best, lw=1.8, where="post", **look["best"])
+    ax.axhline(plan.optimum, ls="--", lw=1.0, **look["optimum"])
+    ax.set_xlabel("cycle")
+    ax.set_ylabel("F")
+    other = ax.twinx()
+    other.plot(cycles, history.distinct, ":", color=style.colour("paths"), lw=1.0)
     other.set_ylabel("different paths")
     other.set_ylim(bottom=0)
-    axes.plot([], [], ":", color=_ROBOT, lw=1.0, label="different paths")
-    axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    ax.plot([], [], ":", lw=1.0, **look["paths"])
+    ax.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
     if len(cycles) == 1:  # an exact planner has no cycles to converge over
-        axes.plot(cycles, history.best, "o", color=_PATH)
-        axes.set_xticks([1])
+        ax.plot(cycles, history.best, "o", color=style.colour("best"))
+        ax.set_xticks([1])
     return figure
 
 
@@ -151,12 +226,14 @@ def figure_files(plan: PlanData) -> dict[str, bytes]:
         "clearance.png": clearance_figure(plan),
         "convergence.png": convergence_figure(plan),
     }
-    files = {}
-    for name, figure in figures.items():
-        content = io.BytesIO()
-        figure.savefig(content, dpi=150, format="png")
-        files[name] = content.getvalue()
-    return files
+    return {name: figure_bytes(figure, ".png") for name, figure in figures.items()}
+
+
+def _path_title(plan: PlanData) -> str:
+    return (
+        f"L = {plan.length:.2f} m, F = {plan.objective:.1f}, δ = {plan.problem.delta:g}, "
+        f"proven clearance {proven(plan.certificate.least_clearance)}"
+    )
 
 
 def _leaves_plane(plan: PlanData) -> bool:
@@ -168,77 +245,21 @@ def _leaves_plane(plan: PlanData) -> bool:
     return bool(np.ptp(across) > 1e-9)
 
 
-def _axes(axes: Axes | None, width: float, height: float) -> tuple[Figure, Axes]:
-    """The given axes, or those of a new figure of a size in inches."""
-    from matplotlib.figure import Figure
-
-    if axes is not None:
-        figure = axes.get_figure(root=True)
-        assert figure is not None
-        return figure, axes
-    figure = Figure(figsize=(width, height), layout="constrained")
-    axes = figure.add_subplot()
-    axes.spines[["top", "right"]].set_visible(False)
-    return figure, axes
-
-
-def _draw_obstacles(axes: Axes, plan: PlanData, view: Array, solid: Flags) -> None:
-    """Circles, those that are not `solid` (N,) faint; with their indices if they are few."""
-    from matplotlib.collections import EllipseCollection
-
-    scene, places = plan.problem.scene, plan.problem.scene.centers @ view.T
-    for chosen, zorder, alpha in ((solid, 2.0, 1.0), (~solid, 1.0, 0.12)):
-        wide = 2.0 * scene.radii[chosen]
-        circles = EllipseCollection(
-            wide,
-            wide,
-            np.zeros(len(wide)),
-            units="xy",
-            offsets=places[chosen],
-            offset_transform=axes.transData,
-            facecolor=_OBSTACLE,
-            edgecolor="#5c6168",
-            alpha=alpha,
-            zorder=zorder,
-        )
-        axes.add_collection(circles, autolim=False)
-    for side in (-1.0, 1.0):
-        axes.update_datalim(places + side * scene.radii[:, None])
-    if len(scene) <= _NUMBERED:
-        for k, place in enumerate(places):
-            axes.annotate(str(k), place, ha="center", va="center", color="white", zorder=3)
-
-
-def _draw_trails(axes: Axes, plan: PlanData, view: Array) -> None:
+def _draw_trails(ax: Axes, plan: PlanData, view: Array, style: Style) -> None:
     """Edges that the ants walked, darker and wider where they are stronger."""
     from matplotlib.collections import LineCollection
+    from matplotlib.colors import LinearSegmentedColormap
 
     segments, strength = trail_segments(plan)
     if not len(segments):
         return
-    ants = isinstance(plan.trails, Trails)
-    trails = LineCollection(list(segments @ view.T), array=strength, cmap="Purples", zorder=1)
+    strongest = style.colour("trails")
+    shades = LinearSegmentedColormap.from_list("trails", ["white", strongest])
+    trails = LineCollection(list(segments @ view.T), array=strength, cmap=shades, zorder=1)
     trails.set_clim(-0.4, 1.0)
     trails.set_linewidth((0.5 + 1.5 * strength).tolist())
-    axes.add_collection(trails)
-    axes.plot([], [], color=_TRAILS, lw=1.2, label=_ANTS if ants else _TREES)
-
-
-def _draw_silhouettes(axes: Axes, plan: PlanData, count: int) -> None:
-    """Collision shapes of the robot at `count` equal steps, in colour at start and goal."""
-    from matplotlib.collections import PolyCollection
-
-    robot, view = plan.problem.robot, view_axes(plan.problem)
-    shapes = list(robot.collision_model.geometryObjects)
-    frames = motion_frames(robot, plan.at(np.linspace(0.0, 1.0, count)))
-    for row in range(count):
-        at_end = row in (0, count - 1)
-        colour = _ROBOT if not at_end else _START if row == 0 else _GOAL
-        silhouette = PolyCollection(
-            [outline.polygon for outline in outlines(shapes, frames, row, view)],
-            facecolor=colour,
-            alpha=0.75 if at_end else 0.28,
-            edgecolor="none",
-            zorder=5 if at_end else 4,
-        )
-        axes.add_collection(silhouette)
+    ax.add_collection(trails)
+    label = style.label("trails")
+    if not isinstance(plan.trails, Trails) and label == _ANTS:
+        label = _TREES
+    ax.plot([], [], color=strongest, lw=1.2, label=label)

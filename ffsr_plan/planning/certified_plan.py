@@ -19,13 +19,12 @@ from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
 from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_csv
-from ffsr_plan.trajectory.flight_limits import FlightLimits, PerJoint, read_limits
-from ffsr_plan.trajectory.timed_plan import TimedPlan, timed
+from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
 
 if TYPE_CHECKING:
-    from ffsr_plan.display.page_server import PageServer
+    from ffsr_plan.display.web.page_server import PageServer
+    from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.planning.smooth_plan import SmoothPlan
-    from ffsr_plan.smooth_flight.smooth_flight import SmoothFlight
     from ffsr_plan.verification.verify import Report
 
 
@@ -92,22 +91,13 @@ class Plan(PlanData):
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
-        return self._flown(one_of("corners", corners, ("smooth", "rest")), duration, limits)
+        from ffsr_plan.planning.flights import smooth_flight, timed_plan
 
-    def _flown(
-        self, corners: str, duration: float | None, limits: FlightLimits
-    ) -> SmoothFlight | TimedPlan:
-        """See `timed`."""
-        if corners == "rest":
-            if duration is not None:
-                raise InvalidInput("duration", duration, "None with corners='rest'")
-            return timed(self.motion, limits, self.certificate.least_clearance)
-        from ffsr_plan.smooth_flight.smooth_flight import smooth_flight
-
-        if limits.velocity_jump > 0.0:
-            allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
-            raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
-        return smooth_flight(self.smooth().curve, limits, duration)
+        if one_of("corners", corners, ("smooth", "rest")) == "smooth":
+            return smooth_flight(self.smooth(), limits, duration)
+        if duration is not None:
+            raise InvalidInput("duration", duration, "None with corners='rest'")
+        return timed_plan(self, limits)
 
     def smooth(self) -> SmoothPlan:
         """The plan along a smooth curve without corners, proven free as the plan is.
@@ -192,12 +182,13 @@ class Plan(PlanData):
         check_memory("samples", size, BYTES_PER_CELL, "fewer samples")
         write_csv(target, path_table(self.motion, np.linspace(0.0, 1.0, rows)))
 
-    def write_html(self, path: str | Path, title: str = "") -> None:
+    def write_html(self, path: str | Path, title: str = "", *, shapes: str = "visual") -> None:
         """Write one self-contained page that shows the motion; it needs no network.
 
         Args:
             path: of the file; an existing file is replaced.
             title: heading; by default the robot and the mode.
+            shapes: of the robot: `visual`, with meshes where its URDF has them, or `collision`.
 
         Raises:
             InvalidInput: a path or title that is none, or a file that cannot be written.
@@ -205,10 +196,16 @@ class Plan(PlanData):
         from ffsr_plan.display.plan_page import page
 
         target = checked_path("path", path)
-        write_text("page", target, page(self, text("title", title)))
+        write_text("page", target, page(self, text("title", title), shapes=shapes))
 
     def write_gif(
-        self, path: str | Path, *, frames: int = 60, width: int = 720, view: str = "path"
+        self,
+        path: str | Path,
+        *,
+        frames: int = 60,
+        width: int = 720,
+        view: str = "path",
+        shapes: str = "visual",
     ) -> None:
         """Write the motion as an animated GIF that repeats for ever.
 
@@ -217,13 +214,14 @@ class Plan(PlanData):
             frames: number of pictures, at equal steps of the path parameter.
             width: of the picture [px].
             view: `path`, seen along the normal y' of the path frame, or `side`, along x'.
+            shapes: of the robot, `visual` or `collision`; meshes as their convex outlines.
 
         Raises:
             InvalidInput: an argument that is not allowed, or a file that cannot be written.
         """
         from ffsr_plan.display.moving_picture import write_gif
 
-        write_gif(self, path, frames=frames, width=width, view=view)
+        write_gif(self, path, frames=frames, width=width, view=view, shapes=shapes)
 
     def show(
         self,
@@ -232,6 +230,7 @@ class Plan(PlanData):
         block: bool | None = None,
         open_browser: bool | None = None,
         title: str = "",
+        shapes: str = "visual",
     ) -> PageServer:
         """Show the page of `write_html`, served on 127.0.0.1 by this process; in notebooks too.
 
@@ -242,6 +241,7 @@ class Plan(PlanData):
             open_browser: whether to open the user's browser; by default unless in a notebook, where
                 the page appears as a frame below the cell.
             title: as for `write_html`.
+            shapes: as for `write_html`.
 
         Returns:
             The server, with its `url`; `stop()`, or the end of a `with` block, ends it.
@@ -249,10 +249,11 @@ class Plan(PlanData):
         Raises:
             InvalidInput: a port that cannot be had, such as one in use.
         """
-        from ffsr_plan.display.browser import serve
         from ffsr_plan.display.plan_page import page
+        from ffsr_plan.display.web.browser import serve
 
-        return serve(page(self, text("title", title)), port, block, open_browser)
+        shown = page(self, text("title", title), shapes=shapes)
+        return serve(shown, port, block, open_browser)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Plan):

@@ -275,6 +275,7 @@ def _bare(shape: ElementTree.Element) -> ElementTree.Element:
 def _with_addresses(shape: ElementTree.Element, arm: Arm) -> ElementTree.Element:
     """A copy of a shape, its mesh addressed by an absolute path if the file exists."""
     copy = _bare(shape)
+    copy.extend(shape.findall("material"))
     for mesh in copy.findall("geometry/mesh"):
         path = find(mesh.get("filename", ""), arm.folders)
         if path is not None:

@@ -141,6 +141,25 @@ def test_paths_and_trajectories_are_written_as_tables(run, tmp_path):
     assert len((tmp_path / "flown.csv").read_bytes()) < len(before)
 
 
+def test_flights_are_drawn_as_figures_pages_and_moving_pictures(run, tmp_path):
+    run("plan", "quick.toml", "--out", "results")
+    files = {"--figure": "flight.pdf", "--page": "flight.html", "--movie": "flight.gif"}
+    fly = ("timed", "results/plan.json", "--thruster-acceleration", 0.01)
+    options = [word for pair in files.items() for word in pair]
+    result = run(*fly, *options, "--movie-speed", 50)
+    assert result.exit_code == 0, result.output
+    begins = {"flight.pdf": b"%PDF", "flight.html": b"<!DOCTYPE html>", "flight.gif": b"GIF89a"}
+    for name, begin in begins.items():
+        assert (tmp_path / name).read_bytes().startswith(begin)
+    refused = run(*fly, *options[:2])
+    assert refused.exit_code == 2
+    assert "--figure" in refused.stderr
+    assert "--force" in refused.stderr
+    wrong = run(*fly, "--movie", "flight.avi")
+    assert wrong.exit_code == 2
+    assert ".mp4" in wrong.stderr
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -32,3 +32,9 @@ def turning_problem(robot):
     goal = robot.configuration((3.0, 0.0, 0.0))
     scene = fp.Scene([[1.5, 1.9, 0.0]], [0.3])
     return fp.Problem(robot, scene, robot.neutral(), goal, lattice=lattice)
+
+
+@pytest.fixture(scope="session")
+def flight(fig2a_plan):
+    """With pulses at corners, a limit that is reached and one far above what is flown."""
+    return fig2a_plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01, velocity_jump=0.04)

@@ -13,8 +13,8 @@ from urllib.parse import urlsplit
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.display.page_server import PageServer
 from ffsr_plan.display.plan_page import page
+from ffsr_plan.display.web.page_server import PageServer
 
 ENVIRONMENT = {**os.environ, "BROWSER": "true"}  # of subprocesses: nothing opens
 
@@ -225,7 +225,7 @@ def test_switches_that_are_not_booleans_are_refused(fig2a_plan, wrong):
 
 def test_the_browser_is_opened_at_the_page(fig2a_plan, monkeypatch):
     opened = []
-    monkeypatch.setattr("ffsr_plan.display.browser.open_in_browser", opened.append)
+    monkeypatch.setattr("ffsr_plan.display.web.browser.open_in_browser", opened.append)
     with fig2a_plan.show(block=False) as shown:
         assert opened == [shown.url]
     with fig2a_plan.show(block=False, open_browser=False):

@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.display.picture_data import drawn_solid, motion_frames, near_track
+from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames, near_track
 
 
 @pytest.mark.parametrize("name", ["planar_dual_arm", "spatial_dual_arm", "satellite_ur5"])

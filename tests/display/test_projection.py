@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.display.picture_data import motion_frames
-from ffsr_plan.display.projection import convex_outline, outlines, view_axes, visible_shapes
+from ffsr_plan.display.scenes.picture_data import motion_frames
+from ffsr_plan.display.scenes.projection import convex_outline, outlines, view_axes, visible_shapes
 
 
 def area(polygon):

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import ffsr_plan as fp
 from ffsr_plan.cli import app
-from ffsr_plan.display.page_server import PageServer
+from ffsr_plan.display.web.page_server import PageServer
 from tests.helpers.documentation_pages import PAGES, ROOT, blocks, title
 
 SLOW_PAGES = ("command_line.md", "manipulator.md", "planning.md")

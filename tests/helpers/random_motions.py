@@ -4,7 +4,7 @@ import numpy as np
 
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.trajectory.flight_limits import read_limits
-from ffsr_plan.trajectory.timed_plan import timed
+from ffsr_plan.trajectory.timed_motion import timed
 from tests.helpers.urdf_builders import random_configuration, random_robot
 
 ALL = (

@@ -5,7 +5,7 @@ import numpy as np
 from ffsr_plan.curves.control_points import control_points_on
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.curves.smooth_curve import SmoothCurve
-from ffsr_plan.smooth_flight.smooth_flight import smooth_flight
+from ffsr_plan.smooth_flight.curve_flight import curve_flight
 from ffsr_plan.trajectory.flight_limits import read_limits
 
 THRUST = {"thruster_acceleration": 0.01}
@@ -32,7 +32,7 @@ def limits_of(curve, **given):
 
 def flown(motion, duration=None, **given):
     curve = curve_of(motion)
-    return smooth_flight(curve, limits_of(curve, **given), duration)
+    return curve_flight(curve, limits_of(curve, **given), duration)
 
 
 def instants(flight, count=100):

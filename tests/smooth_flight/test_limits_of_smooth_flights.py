@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from ffsr_plan.smooth_flight.curve_flight import curve_flight
 from ffsr_plan.smooth_flight.curve_samples import PARTS, curve_samples
 from ffsr_plan.smooth_flight.fastest_pace_kernel import squares_of
 from ffsr_plan.smooth_flight.limits_on_pace import Demands, demands, step_limits
 from ffsr_plan.smooth_flight.pace_search import Search, duration_of
-from ffsr_plan.smooth_flight.smooth_flight import smooth_flight
 from tests.helpers.random_motions import bent_motion
 from tests.helpers.smooth_flights import (
     BY_MODE,
@@ -31,7 +31,7 @@ JERKS = {
 def test_no_limit_is_exceeded_at_100_times_a_step(seed, mode, bend):
     curve = curve_of(bent_motion(seed, mode, edges=6, joints_bend=bend))
     limits = limits_of(curve, **BY_MODE[mode])
-    flight = smooth_flight(curve, limits)
+    flight = curve_flight(curve, limits)
     shares = shares_in_use(flight, limits, instants(flight))
     assert max(shares.values()) <= 1.0 + 1e-9
     assert max(shares.values()) > 0.99
@@ -45,7 +45,7 @@ def test_figure_2a_keeps_its_limits_and_is_as_fast_as_toppra(fig2a_plan, torque)
     limits = limits_of(
         curve, joint_acceleration=0.05, joint_velocity=0.5, joint_torque=torque, **THRUST
     )
-    flight = smooth_flight(curve, limits)
+    flight = curve_flight(curve, limits)
     assert max(shares_in_use(flight, limits, instants(flight)).values()) <= 1.0 + 1e-9
     samples = curve_samples(curve)
     wanted = demands(limits, samples.path, samples.dynamics, curve.robot.mass)
@@ -75,7 +75,7 @@ def test_limits_asked_for_thrice_a_step_hold_in_between_and_the_rest_costs_littl
 def test_limits_on_jerk_are_kept_and_so_are_the_others(seed, mode):
     curve = curve_of(bent_motion(seed, mode, joints_bend=True))
     limits = limits_of(curve, **BY_MODE[mode], **JERKS[mode])
-    flight = smooth_flight(curve, limits)
+    flight = curve_flight(curve, limits)
     times = instants(flight, 10)
     assert max(shares_in_use(flight, limits, times).values()) <= 1.0 + 1e-9
     states = flight.at(times)
@@ -87,14 +87,14 @@ def test_limits_on_jerk_are_kept_and_so_are_the_others(seed, mode):
     if mode == "free-flying":
         base = np.linalg.norm(np.diff(states.base_acceleration, axis=0)[longer] / steps, axis=1)
         assert np.max(base) <= limits.jerk[0] * (1.0 + 1e-6)
-    assert flight.duration > smooth_flight(curve, limits_of(curve, **BY_MODE[mode])).duration
+    assert flight.duration > curve_flight(curve, limits_of(curve, **BY_MODE[mode])).duration
 
 
 def test_limits_on_jerk_are_kept_in_a_given_time_too():
     curve = curve_of(bent_motion(1, "free-flying", joints_bend=True))
     limits = limits_of(curve, **BY_MODE["free-flying"], **JERKS["free-flying"])
-    fastest = smooth_flight(curve, limits)
-    flight = smooth_flight(curve, limits, 1.7 * fastest.duration)
+    fastest = curve_flight(curve, limits)
+    flight = curve_flight(curve, limits, 1.7 * fastest.duration)
     assert flight.duration == pytest.approx(1.7 * fastest.duration, rel=1e-12)
     assert flight.delta_v < 0.8 * fastest.delta_v
     assert max(shares_in_use(flight, limits, instants(flight, 10)).values()) <= 1.0 + 1e-9
@@ -105,11 +105,11 @@ def test_a_curve_that_rests_on_its_way_is_flown_within_the_limits():
     motion = bent_motion(3, "free-flying", edges=6)
     curve = curve_of(motion, np.array([1, 1, 3, 1, 3, 1, 1]))
     limits = limits_of(curve, **BY_MODE["free-flying"])
-    flight = smooth_flight(curve, limits)
+    flight = curve_flight(curve, limits)
     assert max(shares_in_use(flight, limits, instants(flight)).values()) <= 1.0 + 1e-9
     assert len(flight.rests) == 2
     assert np.abs(flight.at(flight.rests).velocities).max() < 1e-6
-    straight = smooth_flight(curve_of(motion), limits)
+    straight = curve_flight(curve_of(motion), limits)
     assert len(straight.rests) == 0
     assert straight.duration < flight.duration < 3.0 * straight.duration
 

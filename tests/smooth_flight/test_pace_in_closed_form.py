@@ -5,8 +5,8 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.smooth_flight.curve_flight import curve_flight
 from ffsr_plan.smooth_flight.pace_search import EndSpeeds
-from ffsr_plan.smooth_flight.smooth_flight import smooth_flight
 from ffsr_plan.smooth_flight.timed_curve import pace_within
 from tests.helpers.random_motions import bent_motion, straight_motion
 from tests.helpers.smooth_flights import BY_MODE, curve_of, flown, limits_of
@@ -93,7 +93,7 @@ def test_a_flight_k_times_as_slow_has_1_k_th_of_velocities_and_1_k2_th_of_forces
     }
     curve = curve_of(motion)
     fast, slow = (
-        smooth_flight(curve, limits_of(curve, **given)) for given in (BY_MODE[mode], slower)
+        curve_flight(curve, limits_of(curve, **given)) for given in (BY_MODE[mode], slower)
     )
     assert slow.duration == pytest.approx(k * fast.duration, rel=1e-9)
     assert slow.delta_v == pytest.approx(fast.delta_v / k, rel=1e-9, abs=1e-12)
@@ -118,7 +118,7 @@ def test_an_acceleration_without_a_limit_is_refused(line):
         flown(line)
     curve = curve_of(bent_motion(1, "attitude-held"))
     with pytest.raises(InvalidInput, match="turn_acceleration"):
-        smooth_flight(curve, limits_of(curve, joint_acceleration=0.1, thruster_acceleration=0.1))
+        curve_flight(curve, limits_of(curve, joint_acceleration=0.1, thruster_acceleration=0.1))
 
 
 def test_limits_of_actuators_that_the_mode_lacks_are_refused():

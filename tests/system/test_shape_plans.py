@@ -172,8 +172,8 @@ def test_links_without_visual_shapes_show_their_collision_shapes(tmp_path):
     assert [robot.link_of(g) for g in robot.visual_model.geometryObjects] == ["base"]
     import meshcat
 
-    from ffsr_plan.display.meshcat_objects import CommandLog
-    from ffsr_plan.display.scene_objects import add_robot
+    from ffsr_plan.display.scenes.meshcat_objects import CommandLog
+    from ffsr_plan.display.scenes.scene_objects import add_robot
 
     log = CommandLog()
     add_robot(meshcat.Visualizer(window=log)["robot"], robot, robot.neutral())

@@ -188,8 +188,8 @@ def test_wrong_arguments_are_refused_by_errors_of_the_package(calls, tmp_path, m
 def test_the_interface_is_covered(calls):
     """Every public function, and every public class that users make, is among the calls."""
     made_by_the_package = {
-        "Branches", "Certificate", "Clearance", "Components", "Counts", "CurvePoints", "CurvedMotion",
-        "Cycle", "EdgeProof",
+        "Branches", "Certificate", "Clearance", "Components", "Counts", "CurvePoints",
+        "CurvedMotion", "Cycle", "EdgeProof",
         "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan",
         "Replacement", "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",

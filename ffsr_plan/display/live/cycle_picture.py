@@ -8,9 +8,9 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.display.meshcat_objects import CommandLog, instances
-from ffsr_plan.display.projection import view_axes
-from ffsr_plan.display.scene_objects import TRACK, add_track, add_trails
+from ffsr_plan.display.scenes.meshcat_objects import CommandLog, instances
+from ffsr_plan.display.scenes.projection import view_axes
+from ffsr_plan.display.scenes.scene_objects import TRACK, add_track, add_trails
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.search.records import Cycle
 

@@ -10,12 +10,12 @@ from functools import cache
 
 from ffsr_plan.core.checks import number, text, truth
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.display.browser import in_notebook, open_in_browser
 from ffsr_plan.display.live import tree_picture
 from ffsr_plan.display.live.cycle_picture import commands, take
 from ffsr_plan.display.live.opening_page import opening_page
-from ffsr_plan.display.page_server import PageServer
 from ffsr_plan.display.plan_page import page
+from ffsr_plan.display.web.browser import in_notebook, open_in_browser
+from ffsr_plan.display.web.page_server import PageServer
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.problem.problem import Problem

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.display.meshcat_objects import CommandLog
-from ffsr_plan.display.picture_data import drawn_solid, motion_frames
-from ffsr_plan.display.scene_objects import add_ends, add_obstacles, set_up
+from ffsr_plan.display.scenes.meshcat_objects import CommandLog
+from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames
+from ffsr_plan.display.scenes.scene_objects import add_ends, add_obstacles, set_up
 from ffsr_plan.display.web.html_template import html_page
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.layered_lattice import LayeredLattice

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ffsr_plan.display.meshcat_objects import CommandLog
-from ffsr_plan.display.picture_data import branch_segments
-from ffsr_plan.display.projection import view_axes
-from ffsr_plan.display.scene_objects import TRACK, add_track, add_trails, place_robot
+from ffsr_plan.display.scenes.meshcat_objects import CommandLog
+from ffsr_plan.display.scenes.picture_data import branch_segments
+from ffsr_plan.display.scenes.projection import view_axes
+from ffsr_plan.display.scenes.scene_objects import TRACK, add_track, add_trails, place_robot
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.records import TreeCycle
 

@@ -1,1 +1,1 @@
-"""HTML templates of the pages, with their scripts and style."""
+"""Pages: their templates, scripts and style, and how they reach a browser."""

@@ -8,14 +8,18 @@ from pathlib import Path
 from typing import Any
 
 _FOLDER = Path(__file__).parent
+_SCRIPTS = {
+    "plan": ("stage.js", "views.js", "charts.js", "plan.js"),
+    "live": ("stage.js", "live.js"),
+}
 _UNSAFE = re.compile("[<>&\u2028\u2029\ud800-\udfff]")
 
 
 def html_page(name: str, data: dict[str, Any]) -> str:
     """Text of a page that loads nothing from elsewhere.
 
-    `frame.html` is common to all pages. It receives the panels in `<name>.html`, the script
-    `<name>.js` after the common `stage.js`, the style sheet, meshcat's script and the data.
+    `frame.html` is common to all pages. It receives the panels in `<name>.html`, the scripts of
+    the page, the style sheet, meshcat's script and the data.
 
     Args:
         name: of the page, `plan` or `live`.
@@ -30,8 +34,7 @@ def html_page(name: str, data: dict[str, Any]) -> str:
     parts = {
         "/*STYLE*/": _read(_FOLDER / "style.css"),
         "<!--PANELS-->": _read(_FOLDER / f"{name}.html"),
-        "/*STAGE*/": _read(_FOLDER / "stage.js"),
-        "/*SCRIPT*/": _read(_FOLDER / f"{name}.js"),
+        "/*SCRIPT*/": "".join(_read(_FOLDER / script) for script in _SCRIPTS[name]),
         "/*MESHCAT*/": _read(bundle).replace("</script", "<\\/script").replace("<!--", "<\\!--"),
         "/*DATA*/": script_literal(data),
     }  # data last, so that a title that contains a placeholder stays as it is

@@ -7,7 +7,7 @@ import sys
 import webbrowser
 
 from ffsr_plan.core.checks import truth
-from ffsr_plan.display.page_server import PageServer
+from ffsr_plan.display.web.page_server import PageServer
 
 
 def in_notebook() -> bool:

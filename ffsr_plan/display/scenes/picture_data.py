@@ -1,4 +1,4 @@
-"""Sampled motion, ants' trails and nearby obstacles: the data of pictures of a plan."""
+"""Sampled motion, curves, ants' trails and nearby obstacles: the data of pictures of a plan."""
 
 from __future__ import annotations
 
@@ -56,6 +56,48 @@ class MotionFrames(NamedTuple):
         last = {shape.parentJoint: k for k, shape in enumerate(shapes)}
         tips = [j for j in range(2, model.njoints) if j not in inner and j in last]
         return {str(model.names[j]): self.placements.positions[:, last[j]] for j in tips}
+
+
+class Curve(NamedTuple):
+    """One curve along a motion.
+
+    Attributes:
+        name: by which users name it, for example a joint.
+        label: in the legend.
+        values: (N,) in the unit of its quantity.
+    """
+
+    name: str
+    label: str
+    values: Array
+
+
+class Quantity(NamedTuple):
+    """Curves of one kind that are drawn over each other.
+
+    Attributes:
+        name: by which users name it.
+        title: what it is.
+        unit: of the values and limits.
+        curves: at least one.
+        limits: positive numbers that the values keep; also negative values, if there are any.
+    """
+
+    name: str
+    title: str
+    unit: str
+    curves: list[Curve]
+    limits: list[float]
+
+    @property
+    def peak(self) -> float:
+        """Largest value without its sign."""
+        return max(float(np.max(np.abs(curve.values), initial=0.0)) for curve in self.curves)
+
+    @property
+    def signed(self) -> bool:
+        """Whether a value is negative."""
+        return any(float(np.min(curve.values, initial=0.0)) < 0.0 for curve in self.curves)
 
 
 def motion_frames(robot: SpaceRobot, configurations: Array) -> MotionFrames:

@@ -10,11 +10,15 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.display.picture_data import MotionFrames
+from ffsr_plan.display.scenes.picture_data import MotionFrames
 from ffsr_plan.lattice.layered_lattice import path_frame
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 
+STILL = 1e-9  # distance [m] of start and goal below which the base stays on the spot
+VIEWS = {"path": (0, 1, 2), "side": (0, 2, 1)}
+"""Rows of the view axes that point to the right, upwards and towards the viewer."""
+SHAPES = ("visual", "collision")
 _LEAST_RADIUS = 0.02  # of drawn spheres and capsules [m], so that points are visible
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
 _RING = np.column_stack([np.cos(_CIRCLE), np.sin(_CIRCLE)])
@@ -43,14 +47,22 @@ def view_axes(problem: Problem) -> Array:
     Returns:
         (3, 3) rows: z' to the right, x' upwards in the picture, y' towards the viewer.
     """
-    if np.linalg.norm(problem.base_displacement) < 1e-9:
+    if np.linalg.norm(problem.base_displacement) < STILL:
         return np.eye(3)
     frame = path_frame(problem.base_displacement)
     return np.array([frame[:, 2], frame[:, 0], frame[:, 1]])
 
 
-def visible_shapes(robot: SpaceRobot) -> list[pin.GeometryObject]:
-    """Visual shapes of all links, and the collision shapes of links that have no visual ones."""
+def visible_shapes(robot: SpaceRobot, shapes: str = "visual") -> list[pin.GeometryObject]:
+    """Shapes of a robot that pictures show.
+
+    Args:
+        robot: the robot.
+        shapes: `visual` for the visual shapes of all links, meshes included, and the collision
+            shapes of links that have no visual ones; `collision` for all collision shapes.
+    """
+    if shapes == "collision":
+        return list(robot.collision_model.geometryObjects)
     visible = list(robot.visual_model.geometryObjects)
     links = {shape.parentFrame for shape in visible}
     return visible + [
@@ -74,7 +86,7 @@ def outlines(
     """
     drawn = []
     for shape in shapes:
-        points, radius = _hull_points(shape)
+        points, radius = hull_points(shape)
         link = shape.parentJoint - 1
         points = points @ shape.placement.rotation.T + shape.placement.translation
         world = points @ frames.rotations[row, link].T + frames.origins[row, link]
@@ -87,7 +99,7 @@ def outlines(
     return drawn
 
 
-def _hull_points(shape: pin.GeometryObject) -> tuple[Array, float]:
+def hull_points(shape: pin.GeometryObject) -> tuple[Array, float]:
     """Points (k, 3) and a radius [m]: the shape lies in the hull of balls around the points."""
     solid = shape.geometry
     if isinstance(solid, coal.Box):

@@ -1,4 +1,4 @@
-"""`TimedPlan`: a plan with a time law, and the forces needed to fly it.
+"""`TimedMotion`: a motion of straight edges with a time law, and the forces needed to fly it.
 
 The law changes only when the robot is where, so proofs of the path remain valid. It is the fastest
 along every straight run under the limits on velocity, acceleration and jerk. Thrust and torques
@@ -43,8 +43,8 @@ _SAME_FORCE = 1e-9  # relative change over a piece below which a force counts as
 
 
 @dataclass(frozen=True, eq=False)
-class TimedPlan(Flight):
-    """A plan flown on its path as fast as limits allow; made by `Plan.timed(corners="rest")`.
+class TimedMotion(Flight):
+    """A motion flown as fast as limits allow; see `TimedPlan` of `ffsr_plan.planning`.
 
     It rests at corners of the path, or passes them with pulses of the thrusters, at the highest
     speed at which no pulse changes the velocity of the base by more than allowed. Pulses count
@@ -77,7 +77,7 @@ class TimedPlan(Flight):
 
     def __repr__(self) -> str:
         return (
-            f"TimedPlan({self.duration:.4g} s, {len(self.rests)} rests, "
+            f"{type(self).__name__}({self.duration:.4g} s, {len(self.rests)} rests, "
             f"{len(self.pulses)} pulses, delta-v {self.delta_v:.4g} m/s)"
         )
 
@@ -136,7 +136,7 @@ class TimedPlan(Flight):
         return _Pulses(self.pulse_times, self.pulse_durations, self.pulses).accelerations(instants)
 
 
-def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:
+def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedMotion:
     """The fastest flight along a motion from rest to rest; see `Plan.timed`.
 
     Args:
@@ -171,7 +171,7 @@ def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedPlan:
     corners, slower = _corner_times(slowed, runs), factors[1:][passed]
     cut = pulses.corner_cut()
     _check_corner_cut(cut, limits, clearance)
-    return TimedPlan(
+    return TimedMotion(
         motion=motion,
         delta_v=float(np.sum(push / factors[law.run])),
         rests=frozen(np.delete(corners, passed)),

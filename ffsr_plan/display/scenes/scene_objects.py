@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array, Flags
-from ffsr_plan.display.meshcat_objects import MeshcatNode, instances, ribbon, solids
-from ffsr_plan.display.projection import view_axes, visible_shapes
+from ffsr_plan.display.scenes.meshcat_objects import MeshcatNode, instances, ribbon, solids
+from ffsr_plan.display.scenes.projection import view_axes, visible_shapes
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
 TRACK, TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)  # colours of the base's and the tips' tracks
+_MARGIN = 0.3  # around the scene [m]
 _TRIANGLES = 90_000  # of solid and of faint obstacles each; more obstacles are drawn less round
 START, GOAL, _OBSTACLE, _FAINT = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
 _GLOW = np.array([(0.14, 0.10, 0.29), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
 
 
-def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) -> dict[str, float]:
+def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) -> dict[str, Any]:
     """Set light and background, and rotate the scene so that the path runs from left to right.
 
     Args:
@@ -31,8 +33,9 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
         radii: (g,) their radii [m].
 
     Returns:
-        Width and height of the scene [m], field of view [degrees] and elevation of the camera
-        [rad], from which the page's script computes the distance of the camera.
+        Size (3) of the scene to the right, upwards and towards the viewer [m], field of view
+        [degrees] and elevation of the camera [rad], from which the page's script computes where
+        the camera is; and the placement (4, 4) of the world in the scene.
     """
     for name in ("/Grid", "/Axes"):
         viewer[name].set_property("visible", False)
@@ -54,9 +57,12 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
     root[:3, :3] = axes
     root[:3, 3] = -0.5 * (low + high)
     viewer.set_transform(root)
-    margin = 0.8  # around the scene [m]
-    width, height = high[0] - low[0] + margin, high[1] - low[1] + margin
-    return {"width": width, "height": height, "fov": fov, "elevation": math.radians(62.0)}
+    return {
+        "size": (high - low + _MARGIN).tolist(),
+        "fov": fov,
+        "elevation": math.radians(62.0),
+        "root": root.tolist(),
+    }
 
 
 def add_obstacles(viewer: MeshcatNode, scene: Scene, drawn_solid: Flags) -> None:
@@ -72,25 +78,34 @@ def add_obstacles(viewer: MeshcatNode, scene: Scene, drawn_solid: Flags) -> None
             viewer[name].set_object(spheres)
 
 
-def add_ends(viewer: MeshcatNode, robot: SpaceRobot, start: Array, goal: Array) -> None:
+def add_ends(
+    viewer: MeshcatNode, robot: SpaceRobot, start: Array, goal: Array, shapes: str = "visual"
+) -> None:
     """Add the robot at the start (nq,), and transparent copies of it at start and goal (nq,)."""
-    add_robot(viewer["robot"], robot, start)
+    add_robot(viewer["robot"], robot, start, shapes=shapes)
     for name, colour, q in (("start", START, start), ("goal", GOAL, goal)):
-        add_robot(viewer["ghosts"][name], robot, q, colour)
+        add_robot(viewer["ghosts"][name], robot, q, colour, shapes)
 
 
-def add_robot(viewer: MeshcatNode, robot: SpaceRobot, q: Array, ghost: int | None = None) -> None:
+def add_robot(
+    viewer: MeshcatNode,
+    robot: SpaceRobot,
+    q: Array,
+    ghost: int | None = None,
+    shapes: str = "visual",
+) -> None:
     """Add a robot, one meshcat node for each joint and below it the shapes of its link.
 
     Args:
         viewer: the node that receives the robot.
-        robot: its visual shapes are shown, of a link without any its collision shapes.
+        robot: the robot.
         q: (nq,) configuration.
         ghost: colour 0xRRGGBB of a transparent copy; by default the robot's own colours.
+        shapes: which are shown, see `visible_shapes`.
     """
     import meshcat.geometry as mg
 
-    for k, shape in enumerate(visible_shapes(robot)):
+    for k, shape in enumerate(visible_shapes(robot, shapes)):
         red, green, blue, _ = (round(255 * float(c)) for c in shape.meshColor)
         material = (
             mg.MeshPhongMaterial(color=(red << 16) + (green << 8) + blue, shininess=50)

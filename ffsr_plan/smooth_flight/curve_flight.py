@@ -1,4 +1,4 @@
-"""`SmoothFlight`: a smooth curve with a time law, and the forces needed to fly it.
+"""`CurveFlight`: a smooth curve with a time law, and the forces needed to fly it.
 
 The law changes only when the robot is where, so proofs of the curve remain valid.
 """
@@ -27,8 +27,8 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # on each piece of the l
 
 
 @dataclass(frozen=True, eq=False)
-class SmoothFlight(Flight):
-    """A smooth curve flown within limits, at rest at its ends only; made by `Plan.timed`.
+class CurveFlight(Flight):
+    """A smooth curve flown within limits, at rest at its ends only; see `SmoothFlight`.
 
     Attributes:
         curve: the curve.
@@ -46,7 +46,7 @@ class SmoothFlight(Flight):
 
     def __repr__(self) -> str:
         return (
-            f"SmoothFlight({self.duration:.4g} s, delta-v {self.delta_v:.4g} m/s, "
+            f"{type(self).__name__}({self.duration:.4g} s, delta-v {self.delta_v:.4g} m/s, "
             f"{self.straight_delta_v:.4g} m/s along a straight line)"
         )
 
@@ -139,9 +139,7 @@ class SmoothFlight(Flight):
         return self._pace.on(self._pace.piece(instants), instants)
 
 
-def smooth_flight(
-    curve: Curve, limits: FlightLimits, duration: float | None = None
-) -> SmoothFlight:
+def curve_flight(curve: Curve, limits: FlightLimits, duration: float | None = None) -> CurveFlight:
     """A curve flown from rest to rest; see `Plan.timed`.
 
     Args:
@@ -153,7 +151,7 @@ def smooth_flight(
         InvalidInput: see `pace_within`.
     """
     pace = pace_within(curve, limits, duration)
-    return SmoothFlight(
+    return CurveFlight(
         curve=curve,
         delta_v=_delta_v(curve, pace),
         straight_delta_v=_straight_delta_v(curve, pace.duration, float(limits.acceleration[0])),

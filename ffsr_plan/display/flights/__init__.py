@@ -1,0 +1,1 @@
+"""Figures, pages and moving pictures of flights, in true time."""

@@ -1,0 +1,1 @@
+"""What pictures show: sampled motions, outlines and objects of meshcat."""

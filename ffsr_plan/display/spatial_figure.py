@@ -1,0 +1,206 @@
+"""Figure of a motion among obstacles in perspective, with the axes of the world.
+
+matplotlib sorts the faces of one collection by their distance, but not those of several. All
+solids, and the track, are therefore faces of one collection.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.display.path_drawing import NUMBERED, mark_ends
+from ffsr_plan.display.scenes.projection import hull_points, view_axes
+
+if TYPE_CHECKING:
+    import pinocchio as pin
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ffsr_plan.core.arrays import Array, Flags
+    from ffsr_plan.display.figure_style import Style
+    from ffsr_plan.display.scenes.picture_data import MotionFrames
+    from ffsr_plan.problem.problem import Problem
+
+_TURN, _ELEVATION = 68.0, 28.0  # of the viewer from the direction of the path, from the plane [deg]
+_LIGHT = np.array([-0.45, -0.55, 0.70]) / np.linalg.norm([-0.45, -0.55, 0.70])  # towards it
+_DARKEST = 0.42  # brightness of faces that turn away from the light
+_TRACK_WIDTH = 0.006  # of the largest extent
+
+
+class _Faces(NamedTuple):
+    """Faces of solids.
+
+    Attributes:
+        polygons: corners (k, 3) of each [m].
+        colours: red, green, blue and opacity of each.
+    """
+
+    polygons: list[Array]
+    colours: list[Array]
+
+    def add(self, polygons: Array, colour: str, alpha: float) -> None:
+        """Add faces (n, k, 3) of one colour and opacity in light, counter-clockwise outside."""
+        from matplotlib.colors import to_rgb
+
+        normals = np.cross(polygons[:, 1] - polygons[:, 0], polygons[:, 2] - polygons[:, 1])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+        light = (_DARKEST + (1.0 - _DARKEST) * np.clip(normals @ _LIGHT, 0.0, 1.0))[:, None]
+        self.polygons.extend(polygons)
+        self.colours.extend(np.hstack([light * to_rgb(colour), np.full_like(light, alpha)]))
+
+    def add_bright(self, polygons: Array, colour: str) -> None:
+        """Add faces (n, k, 3) of one colour that light does not change."""
+        from matplotlib.colors import to_rgba
+
+        self.polygons.extend(polygons)
+        self.colours.extend([np.array(to_rgba(colour))] * len(polygons))
+
+
+def spatial_figure(
+    problem: Problem,
+    frames: MotionFrames,
+    rows: Sequence[int],
+    solid: Flags,
+    style: Style,
+    ax: Axes | None = None,
+    title: str = "",
+) -> Figure:
+    """Obstacles, the robot at several times and the track of its base in perspective.
+
+    Args:
+        problem: what is shown.
+        frames: poses of the robot's links along the motion.
+        rows: of the poses at which the robot is drawn.
+        solid: (N,) obstacles that are drawn; others would hide the robot.
+        style: has `path`, `start`, `goal`, `robot` and `obstacles`.
+        ax: axes to draw on, with `projection="3d"`; by default those of a new figure.
+        title: of the figure.
+
+    Raises:
+        InvalidInput: axes that are not in 3-D.
+    """
+    figure, ax3 = _axes_in_space(ax)
+    faces, scene = _Faces([], []), problem.scene
+    ball = _ball(10)
+    for center, radius in zip(scene.centers[solid], scene.radii[solid], strict=True):
+        faces.add(center + radius * ball, style.colour("obstacles"), 1.0)
+    for row in rows:
+        at_end = row in (rows[0], rows[-1])
+        name = "robot" if not at_end else "start" if row == rows[0] else "goal"
+        faces.add(_robot(frames, row), style.colour(name), 0.9 if at_end else 0.35)
+    cloud = np.vstack([np.vstack(faces.polygons), frames.origins[:, 0]])
+    low, high = cloud.min(axis=0), cloud.max(axis=0)
+    track = frames.origins[:, 0]
+    faces.add_bright(_tube(track, _TRACK_WIDTH * float(np.max(high - low))), style.colour("path"))
+    _draw(ax3, faces)
+    ax3.plot([], [], color=style.colour("path"), lw=2.0, label=style.label("path"))
+    mark_ends(ax3, style)
+    if len(scene) <= NUMBERED:
+        for k, center in enumerate(scene.centers):
+            x, y, z = center + np.array([0.0, 0.0, 1.25 * scene.radii[k]])
+            ax3.text(x, y, z, str(k), ha="center", fontsize=8)
+    _set_view(ax3, problem, low, high)
+    ax3.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0.02), ncols=3)
+    ax3.set_title(title)
+    return figure
+
+
+def _axes_in_space(ax: Axes | None) -> tuple[Figure, Any]:
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D
+
+    if ax is not None:
+        figure = ax.get_figure(root=True) if isinstance(ax, Axes3D) else None
+        if figure is None:
+            raise InvalidInput("ax", ax, 'axes with projection="3d" for the view 3d')
+        return figure, ax
+    figure = Figure(figsize=(9.0, 5.2), layout="constrained")
+    return figure, figure.add_subplot(projection="3d")
+
+
+def _draw(ax: Any, faces: _Faces) -> None:  # noqa: ANN401 - axes in 3-D have no types
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    colours = np.array(faces.colours)
+    edges = colours * np.where(colours[:, 3:] < 1.0, [1.0, 1.0, 1.0, 0.0], 1.0)  # closes seams
+    solids = Poly3DCollection(
+        faces.polygons, facecolors=colours, edgecolors=edges, linewidths=0.3, clip_on=False
+    )
+    ax.add_collection3d(solids)
+
+
+def _set_view(ax: Any, problem: Problem, low: Array, high: Array) -> None:  # noqa: ANN401
+    """Limits, equal scales, and a viewer for whom the path runs from left to right."""
+    middle, half = 0.5 * (low + high), 0.5 * np.maximum(high - low, 0.12 * np.max(high - low))
+    for k, name in enumerate("xyz"):
+        getattr(ax, f"set_{name}lim")(middle[k] - half[k], middle[k] + half[k])
+        getattr(ax, f"set_{name}label")(f"{name} [m]")
+    ax.set_box_aspect(half, zoom=1.4)
+    along = view_axes(problem)[0]
+    ax.view_init(elev=_ELEVATION, azim=np.degrees(np.arctan2(along[1], along[0])) - _TURN)
+    for name, size in zip("xyz", half, strict=True):
+        if size < 0.25 * np.max(half):
+            getattr(ax, f"{name}axis").set_major_locator(_few_ticks())
+
+
+def _few_ticks() -> Any:  # noqa: ANN401
+    from matplotlib.ticker import MaxNLocator
+
+    return MaxNLocator(2)
+
+
+def _robot(frames: MotionFrames, row: int) -> Array:
+    """(n, 3, 3) triangles of the collision shapes in the world at one pose."""
+    triangles = []
+    for shape in frames.robot.collision_model.geometryObjects:
+        link = shape.parentJoint - 1
+        local = shape_triangles(shape)
+        world = local @ frames.rotations[row, link].T + frames.origins[row, link]
+        triangles.append(world)
+    return np.concatenate(triangles)
+
+
+def shape_triangles(shape: pin.GeometryObject) -> Array:
+    """(k, 3, 3) triangles of the convex hull of a shape, in axes of its link [m]."""
+    from scipy.spatial import ConvexHull
+
+    points, radius = hull_points(shape)
+    if radius > 0.0:
+        directions = np.unique(np.round(_ball(6).reshape(-1, 3), 9), axis=0)
+        points = (points[:, None] + radius * directions).reshape(-1, 3)
+    hull = ConvexHull(points, qhull_options="QJ")
+    corners = points[hull.simplices]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = np.sum(normal * hull.equations[:, :3], axis=1) < 0.0
+    corners[inward] = corners[inward][:, ::-1]  # shading asks for the outer side
+    return corners @ shape.placement.rotation.T + shape.placement.translation
+
+
+def _ball(rings: int) -> Array:
+    """(k, 4, 3) faces of a unit sphere with `rings` parallels of latitude."""
+    rise = np.linspace(-np.pi / 2.0, np.pi / 2.0, rings + 1)
+    turn = np.linspace(0.0, 2.0 * np.pi, 2 * rings + 1)
+    flat = np.cos(rise)[:, None]
+    grid = np.stack(
+        [flat * np.cos(turn), flat * np.sin(turn), np.sin(rise)[:, None] + 0.0 * turn], axis=-1
+    )
+    corners = (grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1])
+    return np.stack(corners, axis=2).reshape(-1, 4, 3)
+
+
+def _tube(points: Array, width: float) -> Array:
+    """(n, 4, 3) two crossed bands along each step of a track (N, 3), so that all viewers see it."""
+    steps = np.diff(points, axis=0)
+    moves = np.linalg.norm(steps, axis=1) > 0.0
+    begin, steps = points[:-1][moves], steps[moves]
+    bands, side = [], np.eye(3)[np.argmin(np.abs(steps), axis=1)]
+    for _ in range(2):
+        side = np.cross(steps, side)
+        side *= 0.5 * width / np.linalg.norm(side, axis=1, keepdims=True)
+        end = begin + steps
+        bands.append(np.stack([begin - side, end - side, end + side, begin + side], axis=1))
+    return np.concatenate(bands)

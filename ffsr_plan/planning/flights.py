@@ -1,0 +1,83 @@
+"""`TimedPlan` and `SmoothFlight`: plans flown along their path or along their smooth curve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.planning.flight_pictures import FlightPictures
+from ffsr_plan.planning.smooth_plan import SmoothPlan
+from ffsr_plan.plans.plan_data import PlanData
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
+from ffsr_plan.trajectory.flight_limits import FlightLimits
+from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TimedPlan(FlightPictures, TimedMotion):
+    """A plan flown on its path as fast as limits allow; made by `Plan.timed(corners="rest")`.
+
+    It rests at corners of the path, or passes them with pulses of the thrusters, at the highest
+    speed at which no pulse changes the velocity of the base by more than allowed. Pulses count
+    against the limit on thrust: one of size d takes the time d / thruster_acceleration or longer,
+    does not overlap another, and the pace is constant meanwhile.
+
+    Attributes:
+        motion: the path of the plan.
+        delta_v: velocity change that the thrusters produce in translation: the integral of
+            |thrust| / mass, pulses included [m/s].
+        rests: (k,) times at which the robot rests on the path, without start and goal [s].
+        pulse_times: (p,) times of the corners that pulses pass, in the middle of each pulse [s].
+        pulse_durations: (p,) durations of the pulses [s].
+        pulses: (p, 3) changes of the base's velocity by them, world axes [m/s]; the acceleration
+            during a pulse is constant.
+        corner_cut: largest displacement of the robot from its path by pulses [m]: one of size d and
+            duration t cuts its corner by d t / 8. It is less than the clearance proven along the
+            whole motion.
+        problem: robot, obstacles, start and goal.
+        limits: those that the flight keeps.
+    """
+
+    problem: Problem
+    limits: FlightLimits
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SmoothFlight(FlightPictures, CurveFlight):
+    """A plan flown along its smooth curve, at rest at its ends only; made by `Plan.timed`.
+
+    Attributes:
+        curve: the curve.
+        delta_v: velocity change that the thrusters produce in translation: the integral of
+            |thrust| / mass [m/s].
+        straight_delta_v: what the same change of place needs in the same time and with the same
+            limit on thrust along a straight line, if nothing is in its way: one push, a coast and
+            one push against it [m/s]. No flight from rest to rest needs less.
+        smooth_plan: the plan along the curve, with its proof and its kind. A curve of the kind
+            `with rests` has them where its path bends.
+        limits: those that the flight keeps.
+    """
+
+    smooth_plan: SmoothPlan
+    limits: FlightLimits
+
+    @property
+    def problem(self) -> Problem:  # type: ignore[override]  # handed on, not kept twice
+        """Robot, obstacles, start and goal."""
+        return self.smooth_plan.plan.problem
+
+
+def timed_plan(plan: PlanData, limits: FlightLimits) -> TimedPlan:
+    """A plan flown within limits, with rests or pulses at its corners; see `Plan.timed`."""
+    flight = timed(plan.motion, limits, plan.certificate.least_clearance)
+    return TimedPlan(**vars(flight), problem=plan.problem, limits=limits)
+
+
+def smooth_flight(smooth: SmoothPlan, limits: FlightLimits, duration: float | None) -> SmoothFlight:
+    """A plan flown within limits along its smooth curve; see `Plan.timed`."""
+    if limits.velocity_jump > 0.0:
+        allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
+        raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
+    flight = curve_flight(smooth.curve, limits, duration)
+    return SmoothFlight(**vars(flight), smooth_plan=smooth, limits=limits)
