@@ -10,10 +10,10 @@ import sys
 import ffsr_plan as fp
 
 
-def demo_flight() -> fp.TimedPlan:
+def demo_flight() -> fp.SmoothFlight | fp.TimedPlan:
     """A flight of the scenario `fig2a`, planned by the default planner with seed 0 and refined."""
     plan = fp.plan(fp.load_scenario("fig2a"), seed=0)
-    return plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01, velocity_jump=0.04)
+    return plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01)
 
 
 def main(path: str) -> None:

@@ -18,6 +18,7 @@ class FlightFigures(NamedTuple):
 
     Attributes:
         duration: [s].
+        curve: kind of the smooth curve, see `SmoothPlan`; None along the path itself.
         rests: rests on the way, at corners of the path.
         pulses: pulses of the thrusters at corners.
         largest_pulse: change of velocity [m/s]; None without pulses.
@@ -34,6 +35,7 @@ class FlightFigures(NamedTuple):
     """
 
     duration: float
+    curve: str | None
     rests: int
     pulses: int
     largest_pulse: float | None
@@ -50,7 +52,10 @@ class FlightFigures(NamedTuple):
 
 def flight_figures(flight: SmoothFlight | TimedPlan) -> FlightFigures:
     """The figures of a timed plan."""
+    from ffsr_plan.planning.flights import SmoothFlight
+
     robot = flight.robot
+    smooth = flight if isinstance(flight, SmoothFlight) else None
     times = np.linspace(0.0, flight.duration, _PEAK_SAMPLES)
     states = flight.at(times)
     mass = sum(body.mass for body in list(robot.model.inertias)[1:])
@@ -60,13 +65,14 @@ def flight_figures(flight: SmoothFlight | TimedPlan) -> FlightFigures:
     count, wheels = len(flight.pulses), flight.mode.has_wheels
     return FlightFigures(
         duration=flight.duration,
+        curve=smooth.smooth_plan.kind if smooth else None,
         rests=len(flight.rests),
         pulses=count,
         largest_pulse=float(np.max(np.linalg.norm(flight.pulses, axis=1))) if count else None,
         longest_pulse=float(np.max(flight.pulse_durations)) if count else None,
         corner_cut=flight.corner_cut if count else None,
         delta_v=flight.delta_v,
-        straight_delta_v=getattr(flight, "straight_delta_v", None),
+        straight_delta_v=smooth.straight_delta_v if smooth else None,
         peak_thrust=float(np.max(np.linalg.norm(thrust, axis=1))),
         peak_wheel_torque=np.max(np.abs(states.wheel_torque), axis=0) if wheels else None,
         peak_wheel_momentum=np.max(np.abs(states.wheel_momentum), axis=0) if wheels else None,

@@ -95,6 +95,8 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
 def flight_rows(flight: FlightFigures) -> Iterator[tuple[str, str]]:
     """Names and values of a timed plan."""
     yield "duration", f"{flight.duration:.2f} s"
+    if flight.curve is not None:
+        yield "smooth curve", flight.curve
     where = ", at corners of the path" if flight.rests else ""
     yield "rests on the way", f"{flight.rests}{where}"
     if flight.pulses:

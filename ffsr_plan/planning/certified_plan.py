@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ffsr_plan.core.checks import one_of, text, whole_number
 from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.checks import text, whole_number
 from ffsr_plan.core.cost_estimate import check_memory
-from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
 from ffsr_plan.plans import plan_file
@@ -58,7 +57,7 @@ class Plan(PlanData):
         Args:
             corners: `smooth` or `rest`.
             duration: of a smooth flight, the calmest that takes it [s]; by default the shortest.
-            joint_acceleration: [rad/s^2 or m/s^2], of every joint that moves.
+            joint_acceleration: of every joint that moves [rad/s^2 or m/s^2].
             thruster_acceleration: thrust / mass, and with `corners="rest"` that of the base origin
                 [m/s^2]. It and other limits of the base are refused where nothing moves it.
             joint_velocity: [rad/s or m/s].
@@ -72,9 +71,8 @@ class Plan(PlanData):
                 the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
 
         Raises:
-            InvalidInput: a limit that cannot be or is needed and not given, a duration shorter than
-                the fastest flight, pulses along a smooth curve or such that cut a corner by more
-                than the proven clearance, or a plan without any motion.
+            InvalidInput: a limit that cannot be or is missing, a duration shorter than the fastest
+                flight, pulses that cut corners by more than the clearance, or no motion at all.
             UnprovenCurve: see `smooth`.
         """
         limits = read_limits(
@@ -91,13 +89,9 @@ class Plan(PlanData):
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
-        from ffsr_plan.planning.flights import smooth_flight, timed_plan
+        from ffsr_plan.planning.flights import flown
 
-        if one_of("corners", corners, ("smooth", "rest")) == "smooth":
-            return smooth_flight(self.smooth(), limits, duration)
-        if duration is not None:
-            raise InvalidInput("duration", duration, "None with corners='rest'")
-        return timed_plan(self, limits)
+        return flown(self, limits, corners, duration)
 
     def smooth(self) -> SmoothPlan:
         """The plan along a smooth curve without corners, proven free as the plan is.

@@ -37,4 +37,6 @@ def turning_problem(robot):
 @pytest.fixture(scope="session")
 def flight(fig2a_plan):
     """With pulses at corners, a limit that is reached and one far above what is flown."""
-    return fig2a_plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01, velocity_jump=0.04)
+    return fig2a_plan.timed(
+        joint_acceleration=0.05, thruster_acceleration=0.01, velocity_jump=0.04, corners="rest"
+    )

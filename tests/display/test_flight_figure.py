@@ -74,14 +74,14 @@ def test_silhouettes_carry_their_times_and_the_panels_mark_them(figure, flight):
 
 
 def test_two_flights_can_be_compared_on_given_axes(flight, fig2a_plan):
-    slow = fig2a_plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01)
+    smooth = fig2a_plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01)
     figure = Figure()
     speed = figure.add_subplot()
-    for each, colour, label in ((slow, "tab:red", "rests"), (flight, "tab:blue", "pulses")):
+    for each, colour, label in ((smooth, "tab:red", "smooth"), (flight, "tab:blue", "pulses")):
         drawn = each.figure({"speed": speed}, colours={"speed": colour}, labels={"speed": label})
         assert drawn is figure
-    assert legend(speed) == ["rests", "pulses"]
-    assert speed.get_xlim()[1] == pytest.approx(slow.duration)
+    assert legend(speed) == ["smooth", "pulses"]
+    assert speed.get_xlim()[1] == pytest.approx(max(smooth.duration, flight.duration))
 
 
 @pytest.mark.parametrize(

@@ -112,4 +112,4 @@ def test_it_has_no_pulses():
 
 def test_a_flight_says_what_it_is():
     flight = flown(bent_motion(1, "free-flying"), **BY_MODE["free-flying"])
-    assert repr(flight).startswith(f"SmoothFlight({flight.duration:.4g} s, delta-v")
+    assert repr(flight).startswith(f"CurveFlight({flight.duration:.4g} s, delta-v")

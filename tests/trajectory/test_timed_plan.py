@@ -290,4 +290,4 @@ def test_states_name_the_base_attitude_and_the_joint_velocities():
     assert np.array_equal(states.attitudes, states.configurations[:, 3:7])
     assert np.array_equal(states.joint_velocities, states.velocities[:, 6:])
     assert repr(states) == f"States(21 instants, {flight.motion.robot.nd} joints)"
-    assert repr(flight).startswith(f"TimedPlan({flight.duration:.4g} s, 3 rests, 0 pulses")
+    assert repr(flight).startswith(f"TimedMotion({flight.duration:.4g} s, 3 rests, 0 pulses")
