@@ -9,12 +9,12 @@ import numpy as np
 
 from ffsr_plan.collision.contacts import named
 from ffsr_plan.core.arrays import Array, IntArray, frozen
-from ffsr_plan.core.errors import InvalidInput, NoPath, UnprovenPath
+from ffsr_plan.core.errors import InvalidInput, NoPath, OutOfTime, UnprovenPath
 from ffsr_plan.core.setting_rules import Number, WholeNumber
 from ffsr_plan.core.settings import settings
 from ffsr_plan.fuel.lattice_search import LeastChange, least_change_path
 from ffsr_plan.fuel.pair_programme import BYTES_PER_EDGE
-from ffsr_plan.fuel.refinement import BestRefined, FuelRefinement, best_refined
+from ffsr_plan.fuel.refinement import BestRefined, FuelRefinement, RefinedOffsets, best_refined
 from ffsr_plan.lattice.certificate import Certificate, Counts, proven_clearance
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
@@ -49,7 +49,8 @@ class LeastFuel:
     `plan.smooth()`. The planner looks for the best path on a lattice of few layers, which is exact
     there, and refines it and the optimum of F from the problem's lattice by their lateral offsets
     on all layers of the problem's lattice; the better one is returned. Every edge keeps the margin,
-    proven. `plan.fuel` has its figures. F and L of the plan are those of its motion; `optimum` and
+    proven. Where a time limit ends the refinement, the path of few layers is returned as it is, if
+    their corners are on layers of the problem's lattice. `plan.fuel` has its figures. F and L of the plan are those of its motion; `optimum` and
     `lattice_objective` are those of the problem's lattice, whose optimum `nodes` holds.
 
     Attributes:
@@ -159,7 +160,13 @@ class LeastFuel:
         grown = coarse.obstacles
         prover = Prover(lattice.nominal, grown, roadmap.problem.tolerance, deadline)
         refinement = FuelRefinement(lattice, prover, grown, deadline)
-        best = best_refined(refinement, starts)
+        try:
+            best = best_refined(refinement, starts)
+        except OutOfTime:
+            if on_lattice is None or lattice.divisions % self.layers:
+                raise
+            path = RefinedOffsets(starts[_PAIRS], on_lattice.change)
+            best = BestRefined(_PAIRS, path, cut_short=True)
         if best is None:
             raise no_path or _unproven(refinement, coarse.obstacles, lattice.divisions)
         counts = roadmap.counts().plus(own.counts()).plus(refinement.counts())

@@ -44,12 +44,10 @@ class RefinedOffsets(NamedTuple):
 
     Attributes:
         offsets: (m + 1, 3) displacement of the base from the nominal positions [m].
-        clearances: (m + 1,) at the control points, in the scene of the proof [m].
         change: change of velocity for a flight of unit duration [m].
     """
 
     offsets: Array
-    clearances: Array
     change: float
 
 
@@ -125,10 +123,10 @@ class FuelRefinement:
         for _ in range(_PROOFS):
             present = self._descended(programme, present, stations, spare)
             at = present @ lattice.directions
-            clearances, refused = self._refused(at)
+            refused = self._refused(at)
             if not len(refused.edges):
                 change = lattice.divisions * programme.change(present)
-                return RefinedOffsets(frozen(at), frozen(clearances), change)
+                return RefinedOffsets(frozen(at), change)
             stations = stations.with_others(refused)
             spare *= _GROWTH
         return None
@@ -167,22 +165,22 @@ class FuelRefinement:
             of_station.append(np.full(len(across), k))
         return Cuts(*map(np.concatenate, (points, slopes, values, of_station)))
 
-    def _refused(self, offsets: Array) -> tuple[Array, Stations]:
-        """Clearances (m + 1,) at the control points, and where edges and pieces are refused."""
+    def _refused(self, offsets: Array) -> Stations:
+        """Where edges of the polygon, or then pieces of the curve, are refused."""
         m, motion = self._lattice.divisions, self._lattice.nominal.displaced(offsets)
-        clearances, edges, times = self._proven(self._prover, offsets)
+        edges, times = self._proven(self._prover, offsets)
         refused = on_polygon(edges, times)
         if not len(edges):  # a polygon that is refused has to change anyway
             control = control_points_on(motion, np.arange(m + 1.0))
             curve = CurvedMotion(motion, control)
             prover = Prover(curve, self._scene, self._tolerance, self._deadline)
-            _, pieces, times = self._proven(prover, np.zeros((m + 1, 3)))
+            pieces, times = self._proven(prover, np.zeros((m + 1, 3)))
             self._other_queries += prover.queries
             refused = refused.with_others(on_curve(m, pieces, times))
-        return clearances, refused
+        return refused
 
-    def _proven(self, prover: Prover, offsets: Array) -> tuple[Array, IntArray, Array]:
-        """Clearances (m + 1,) at the ends of edges; edges not proven free, and times on them."""
+    def _proven(self, prover: Prover, offsets: Array) -> tuple[IntArray, Array]:
+        """Edges not proven free, and times on them."""
         layers = np.arange(len(offsets))
         before = prover.queries
         clearances = prover.clearances(layers, offsets)
@@ -196,7 +194,7 @@ class FuelRefinement:
         for k in edges[:1].tolist():
             near = prover.nearest(k, offsets[k], offsets[k + 1], verdicts[k].time)
             self.nearest = k, near
-        return clearances, edges, np.array([verdicts[k].time for k in edges.tolist()])
+        return edges, np.array([verdicts[k].time for k in edges.tolist()])
 
 
 def best_refined(refinement: FuelRefinement, starts: dict[str, Array]) -> BestRefined | None:

@@ -7,8 +7,10 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.curves.control_points import control_points_on
 from ffsr_plan.curves.curved_motion import CurvedMotion
+from ffsr_plan.fuel.refinement import FuelRefinement
 from ffsr_plan.scene.generators import scatter
 from ffsr_plan.search.fuel_figures import velocity_change
 from tests.helpers.urdf_builders import random_scene
@@ -211,3 +213,20 @@ def test_a_deadline_that_is_too_short_is_an_error_and_a_longer_one_gives_a_plan(
     with pytest.raises(fp.OutOfTime):
         fp.plan(problem, fp.LeastFuel(), time_limit=1e-4)
     assert not fp.plan(problem, fp.LeastFuel(), time_limit=60.0).interrupted
+
+
+def test_without_time_for_refinement_the_proven_path_of_few_layers_is_returned(
+    problem, monkeypatch
+):
+    def too_late(self, offsets):
+        raise OutOfTime("the refinement of a path", "no path")
+
+    monkeypatch.setattr(FuelRefinement, "refined", too_late)
+    plan = fp.plan(problem, fp.LeastFuel(margin=0.02))
+    assert plan.interrupted and plan.certificate.least_clearance >= 0.02
+    assert plan.fuel.change == plan.fuel.lattice_change
+    assert plan.fuel.change == pytest.approx(velocity_change(plan.motion.positions), rel=1e-9)
+    assert least_sampled(plan)[0] >= 0.02
+    assert plan.verify().ok
+    with pytest.raises(OutOfTime):  # corners between the layers of the problem's lattice
+        fp.plan(problem, fp.LeastFuel(layers=9))
