@@ -50,8 +50,9 @@ class LeastFuel:
     there, and refines it and the optimum of F from the problem's lattice by their lateral offsets
     on all layers of the problem's lattice; the better one is returned. Every edge keeps the margin,
     proven. Where a time limit ends the refinement, the path of few layers is returned as it is, if
-    their corners are on layers of the problem's lattice. `plan.fuel` has its figures. F and L of the plan are those of its motion; `optimum` and
-    `lattice_objective` are those of the problem's lattice, whose optimum `nodes` holds.
+    their corners are on layers of the problem's lattice. `plan.fuel` has its figures. F and L of
+    the plan are those of its motion; `optimum` and `lattice_objective` are those of the problem's
+    lattice, whose optimum `nodes` holds.
 
     Attributes:
         margin: clearance that is kept beyond the problem's `min_clearance` [m]; less than that of

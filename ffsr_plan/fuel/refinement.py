@@ -1,11 +1,9 @@
 """Refinement of a path's lateral offsets to a small change of velocity, polygon and curve proven.
 
-Round by round the clearances at stations on the control polygon and on its curve are replaced by
-linear functions that are nowhere above them (`collision.near_pairs`), and the best offsets under
-these are taken (`least_change_programme`): where a path has been clear at all stations, it stays
-so, and its change of velocity falls. Offsets are lateral only: with layers free to move along the
-way too, a path could jump across an obstacle between two of them. Then the edges of the polygon
-and the pieces of the curve are proven free. Where one is refused, the place becomes a station.
+Stations lie on the control polygon and on its curve, and offsets descend to a small change of
+velocity (`descent`). They are lateral only: with layers free to move along the way too, a path
+could jump across an obstacle between two of them. Then the edges of the polygon and the pieces of
+the curve are proven free. Where one is refused, the place becomes a station.
 """
 
 from __future__ import annotations
@@ -16,12 +14,13 @@ import numpy as np
 
 from ffsr_plan.collision.distances import Nearest
 from ffsr_plan.collision.near_pairs import NearPairs
-from ffsr_plan.collision.shape_placements import Placements, shape_placements
+from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.curves.control_points import control_points_on
 from ffsr_plan.curves.curved_motion import CurvedMotion
-from ffsr_plan.fuel.least_change_programme import Cuts, Programme
+from ffsr_plan.fuel.descent import Descent
+from ffsr_plan.fuel.least_change_programme import Programme
 from ffsr_plan.fuel.stations import Stations, on_curve, on_polygon, usual_stations
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
@@ -29,14 +28,10 @@ from ffsr_plan.proof.prover import Prover
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
 
-_ROUNDS, _LEAST_GAIN = 25, 1e-4  # of one descent; relative, over which it goes on
 _SAME = 1e-6  # relative: changes that differ by less are equal
-_PROOFS = 8  # how often a path is proven and corrected
-_REACH, _SHRINKING, _LEAST_REACH = 1.0, 0.85, 0.2
-"""Largest change of an offset in a round, in steps along the way: at first, from round to round,
-and at least."""
-_SPARE = 3.0  # clearance asked for at stations, in the tolerance of proofs
-_GROWTH = 1.6  # of that where edges are refused at stations
+PROOFS = 8  # how often a path is proven and corrected
+SPARE = 3.0  # clearance asked for at stations, in the tolerance of proofs
+GROWTH = 1.6  # of that where edges are refused at stations
 
 
 class RefinedOffsets(NamedTuple):
@@ -89,8 +84,10 @@ class FuelRefinement:
         problem, self._lattice, self._prover = lattice.problem, lattice, prover
         self._deadline, self._pairs = deadline, NearPairs(problem.robot, scene, deadline)
         axes = [getattr(problem.given_lattice, name) for name in problem.given_lattice.axes]
-        self._rim = np.array([axis.half_count * axis.spacing for axis in axes])
-        self._step = float(np.linalg.norm(problem.base_displacement)) / lattice.divisions
+        rim = np.array([axis.half_count * axis.spacing for axis in axes])
+        step = float(np.linalg.norm(problem.base_displacement)) / lattice.divisions
+        self._programme = Programme.lateral(lattice.divisions, step, rim)
+        self._descent = Descent(self._programme, self._pairs, lattice.directions, step)
         self._tolerance = problem.tolerance
         self.edges_free = self.edges_refused = 0
         self.nearest: tuple[int, Nearest] | None = None
@@ -117,53 +114,20 @@ class FuelRefinement:
             OutOfTime: at the deadline.
         """
         lattice = self._lattice
-        programme = Programme(lattice.divisions, self._step, self._rim)
         present = offsets @ lattice.directions.T
-        stations, spare = usual_stations(lattice.divisions), _SPARE * self._tolerance
-        for _ in range(_PROOFS):
-            present = self._descended(programme, present, stations, spare)
+        stations, spare = usual_stations(lattice.divisions), SPARE * self._tolerance
+        for _ in range(PROOFS):
+            q = lattice.nominal.at(stations.edges, stations.times)
+            placed = shape_placements(lattice.problem.robot, q)
+            present = self._descent.descended(placed, stations, present, spare)
             at = present @ lattice.directions
             refused = self._refused(at)
             if not len(refused.edges):
-                change = lattice.divisions * programme.change(present)
+                change = lattice.divisions * self._programme.change(present)
                 return RefinedOffsets(frozen(at), change)
             stations = stations.with_others(refused)
-            spare *= _GROWTH
+            spare *= GROWTH
         return None
-
-    def _descended(
-        self, programme: Programme, offsets: Array, stations: Stations, spare: float
-    ) -> Array:
-        """Offsets (m + 1, axes) after rounds that end where little is gained."""
-        lattice = self._lattice
-        q = lattice.nominal.at(stations.edges, stations.times)
-        placed, last = shape_placements(lattice.problem.robot, q), np.inf
-        for k in range(_ROUNDS):
-            radius = max(_REACH * _SHRINKING**k, _LEAST_REACH) * self._step
-            cuts = self._cuts(placed, stations, offsets, spare, radius)
-            offsets = programme.best(offsets, cuts, radius)
-            value, clear = programme.change(offsets), np.all(cuts.values > -0.1 * spare)
-            if clear and abs(last - value) < _LEAST_GAIN * value:
-                break
-            last = value
-        return offsets
-
-    def _cuts(
-        self, placed: Placements, stations: Stations, offsets: Array, spare: float, radius: float
-    ) -> Cuts:
-        """Linear clearances of all pairs that a round may bring together."""
-        directions = self._lattice.directions
-        shifts = stations.displaced(offsets) @ directions
-        limit = spare + radius * np.sqrt(len(directions))
-        points, slopes, values, of_station = [], [], [], []
-        for k, shift in enumerate(shifts):
-            gaps = self._pairs.at(placed, k, shift, limit)
-            across = gaps.gradients @ directions.T
-            points.append(np.tile(stations.points[k], (len(across), 1)))
-            slopes.append(stations.shares[k][None, :, None] * across[:, None, :])
-            values.append(gaps.distances - spare)
-            of_station.append(np.full(len(across), k))
-        return Cuts(*map(np.concatenate, (points, slopes, values, of_station)))
 
     def _refused(self, offsets: Array) -> Stations:
         """Where edges of the polygon, or then pieces of the curve, are refused."""

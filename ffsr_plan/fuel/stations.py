@@ -82,8 +82,16 @@ def usual_stations(divisions: int) -> Stations:
     Args:
         divisions: m, at least 2.
     """
+    inner = np.arange(1, divisions)
+    return on_polygon(inner, np.zeros(len(inner))).with_others(curve_stations(divisions))
+
+
+def curve_stations(divisions: int) -> Stations:
+    """The inner knots and the middles of the curve's pieces.
+
+    Args:
+        divisions: m, at least 2.
+    """
     inner, every = np.arange(1, divisions), np.arange(divisions)
-    corners = on_polygon(inner, np.zeros(len(inner)))
     knots = on_curve(divisions, inner, np.zeros(len(inner)))
-    middles = on_curve(divisions, every, np.full(divisions, 0.5))
-    return corners.with_others(knots).with_others(middles)
+    return knots.with_others(on_curve(divisions, every, np.full(divisions, 0.5)))

@@ -52,14 +52,13 @@ class Plan(PlanData):
         The flight follows the proven smooth curve of `smooth`, or with `corners="rest"` exactly the
         proven path, with a rest at every corner. A quantity without a value is not limited;
         `joint_velocity`, `joint_acceleration` and `joint_jerk` default to the URDF's. Limits for
-        joints are one number for all, or numbers by name, and the URDF's for joints not named.
+        joints are one number, or numbers by name, and the URDF's for those not named.
 
         Args:
             corners: `smooth` or `rest`.
             duration: of a smooth flight, the calmest that takes it [s]; by default the shortest.
             joint_acceleration: of every joint that moves [rad/s^2 or m/s^2].
-            thruster_acceleration: thrust / mass, and with `corners="rest"` that of the base origin
-                [m/s^2]. It and other limits of the base are refused where nothing moves it.
+            thruster_acceleration: thrust / mass [m/s^2]; refused where nothing moves the base.
             joint_velocity: [rad/s or m/s].
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
@@ -71,8 +70,8 @@ class Plan(PlanData):
                 the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
 
         Raises:
-            InvalidInput: a limit that cannot be or is missing, a duration shorter than the fastest
-                flight, pulses that cut corners by more than the clearance, or no motion at all.
+            InvalidInput: a limit that cannot be or is missing, too short a duration, pulses that
+                cut corners by more than the clearance, or no motion at all.
             UnprovenCurve: see `smooth`.
         """
         limits = read_limits(
@@ -106,6 +105,26 @@ class Plan(PlanData):
         from ffsr_plan.planning.smooth_plan import smoothed
 
         return smoothed(self)
+
+    def least_fuel(self, margin: float = 0.0) -> SmoothPlan:
+        """The plan along a smooth curve that needs little fuel, proven free as the plan is.
+
+        The joints move as along `smooth`; the base is displaced so that the velocity of the centre
+        of mass changes little, also to hurry or wait while arms move. It is a local search from the
+        plan's path: `fp.LeastFuel` also looks for another way past the obstacles of a lattice.
+        Where nothing better is found the curve of `smooth` is returned.
+
+        Args:
+            margin: clearance to keep beyond the problem's `min_clearance`; less than that of start
+                and goal [m].
+
+        Raises:
+            InvalidInput: a mode without thrusters, or a margin that cannot be kept.
+            UnprovenCurve: see `smooth`.
+        """
+        from ffsr_plan.planning.smooth_plan import least_fuel
+
+        return least_fuel(self, margin)
 
     def verify(
         self, samples: int | None = None, on_progress: Callable[[float], object] | None = None

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import finite_array
+from ffsr_plan.core.checks import finite_array, number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.curves.smooth_curve import SmoothCurve
+from ffsr_plan.fuel.curve_refinement import curve_change, refined_curve
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.smoothing.curve_objective import curve_lengths, curve_objective
+from ffsr_plan.smoothing.curve_proof import prove_curve
 from ffsr_plan.smoothing.proven_curve import Kind, ProvenCurve, proven_curve
 
 
@@ -30,8 +33,8 @@ class SmoothPlan:
         plan: the plan that was smoothed.
         curve: the curve. Its parameter runs from 0 to the number of its pieces.
         kind: what the curve is: a `spline` whose control points are the plan's nodes, a `refined
-            spline` with more of them, the spline `through` the nodes, or the plan's path `with
-            rests` at its bends.
+            spline` with more of them, the spline `through` the nodes, the plan's path `with rests`
+            at its bends, or one of `least fuel` beside the path.
         nodes: (m + 1,) parameters of the curve that belong to the plan's nodes.
         length: L by its definition for paths [m]; shorter than the plan's but for `through`.
         objective: F by its definition for paths [length units]. It may be a little larger than the
@@ -49,6 +52,26 @@ class SmoothPlan:
     objective: float
     clearances: Array
     certificate: Certificate
+
+    @cached_property
+    def change(self) -> float:
+        """Change of the centre of mass's velocity for a flight of unit duration [m].
+
+        At constant pace along the curve, from rest to rest: divided by a duration it is the delta-v
+        [m/s]. 0 where nothing moves the base.
+        """
+        return 0.0 if self.plan.problem.mode.floats else curve_change(self.curve.motion)
+
+    def delta_v(self, duration: float) -> float:
+        """Delta-v of a flight at constant pace [m/s].
+
+        Args:
+            duration: of the flight [s].
+
+        Raises:
+            InvalidInput: a duration that is not positive.
+        """
+        return self.change / number("duration", duration, above=0.0)
 
     def at(self, s: ArrayLike) -> Array:
         """Configuration at path parameter `s`, the reaction of the base included.
@@ -110,9 +133,55 @@ def smoothed(plan: PlanData) -> SmoothPlan:
     Raises:
         UnprovenCurve: nothing could be proven, not even the plan's path with rests.
     """
-    problem = plan.problem
-    found = proven_curve(problem, plan.motion)
-    curve = found.proof.curve
+    return _along(plan, proven_curve(plan.problem, plan.motion))
+
+
+def least_fuel(plan: PlanData, margin: float) -> SmoothPlan:
+    """The plan along a smooth curve that needs little fuel; see `Plan.least_fuel`.
+
+    Args:
+        plan: the plan.
+        margin: clearance to keep [m].
+
+    Raises:
+        InvalidInput: a plan without thrusters, or a margin that cannot be kept.
+        UnprovenCurve: see `smoothed`.
+    """
+    problem, motion = plan.problem, plan.motion
+    margin = number("margin", margin, at_least=0.0)
+    if problem.mode.floats:
+        allowed = "free-flying or attitude-held: without thrusters no fuel is burnt"
+        raise InvalidInput("mode", str(problem.mode), allowed)
+    for end, clearance in zip(("start", "goal"), plan.clearances[[0, -1]].tolist(), strict=True):
+        if clearance <= margin:
+            allowed = f"less than {clearance:.6g} m, the clearance of the {end}"
+            raise InvalidInput("margin", margin, allowed)
+    plain, found = smoothed(plan), refined_curve(problem, motion, _directions(plan), margin)
+    keeps = plain.certificate.least_clearance >= margin
+    if found is not None:
+        proof = prove_curve(problem, found.curve, problem.tolerance)
+        curve = ProvenCurve("least fuel", proof, found.nodes, found.refused, found.queries)
+        refined = _along(plan, curve, margin)
+        if not keeps or refined.change < plain.change:
+            return refined
+    if not keeps:
+        most = plain.certificate.least_clearance
+        raise InvalidInput("margin", margin, f"at most {most:.6g} m; no curve with more was found")
+    return plain
+
+
+def _directions(plan: PlanData) -> Array:
+    """(axes, 3) directions of displacements: along the way and those of a lattice, or all."""
+    way = plan.problem.base_displacement
+    length = float(np.linalg.norm(way))
+    if plan.lattice is None or length == 0.0:
+        return np.eye(3)
+    return np.vstack([way / length, plan.lattice.directions])
+
+
+def _along(plan: PlanData, found: ProvenCurve, margin: float = 0.0) -> SmoothPlan:
+    """The plan along a proven curve, which keeps a margin."""
+    problem, curve = plan.problem, found.proof.curve
     lengths = curve_lengths(problem, curve)
     return SmoothPlan(
         plan=plan,
@@ -122,12 +191,12 @@ def smoothed(plan: PlanData) -> SmoothPlan:
         length=float(lengths.sum()),
         objective=curve_objective(problem, curve, found.nodes[1:-1], lengths),
         clearances=frozen(found.proof.clearances),
-        certificate=_certificate(problem.robot.unchecked_links, found),
+        certificate=_certificate(problem.robot.unchecked_links, found, margin),
     )
 
 
-def _certificate(unchecked: tuple[str, ...], found: ProvenCurve) -> Certificate:
+def _certificate(unchecked: tuple[str, ...], found: ProvenCurve, margin: float) -> Certificate:
     proof = found.proof
-    least, nodes = proof.least_clearance(), proof.node_queries
+    least, nodes = max(proof.least_clearance(), margin), proof.node_queries
     queries = found.queries + proof.prover.queries - nodes
     return Certificate(proof.curve.edges, found.refused, nodes, queries, least, unchecked)

@@ -66,6 +66,17 @@ def prove_curve(problem: Problem, curve: CurvedMotion, tolerance: float) -> Curv
     )
 
 
+def joints_are_proven(problem: Problem, curve: CurvedMotion) -> bool:
+    """Whether links keep apart and limits hold along a curve, wherever its base is.
+
+    Args:
+        problem: gives the limits, and the window, in which the base has to be.
+        curve: the curve.
+    """
+    prover = Prover(curve, problem.obstacles, problem.tolerance)
+    return not np.any(_outside(problem, curve) | _not_free(prover.self_verdicts()))
+
+
 def _not_free(verdicts: list[Verdict]) -> Flags:
     return np.array([not verdict.free for verdict in verdicts])
 

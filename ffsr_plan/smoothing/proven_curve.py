@@ -28,8 +28,8 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.goal_attitude import curve_to_attitude
 
-Kind = Literal["spline", "refined spline", "through", "with rests"]
-"""What a smooth curve is; see `proven_curve`."""
+Kind = Literal["spline", "refined spline", "through", "with rests", "least fuel"]
+"""What a smooth curve is: see `proven_curve`, and for the last `fuel.curve_refinement`."""
 _BESIDE_REFUSED, _ROUNDS = 3, 7  # rounds of refinement beside what was refused, and in all
 _NO_BEND = 1e-9  # second difference of control points [m or rad] that counts as none
 _LEAST_TOLERANCE = 1e-7  # [m] of the path itself, which may be closer than the problem's
@@ -103,11 +103,11 @@ def _attempt(
 
     It is added as None where it does not arrive at the attitude that is demanded.
     """
-    at_rest, curve = candidate.kind == "with rests", None
-    if problem.reach_attitude and not (motion.joints_are_straight or at_rest):
-        curve = curve_to_attitude(motion, candidate.control, problem.goal[3:7])
+    at_rest = candidate.kind == "with rests"
+    if at_rest:
+        curve: CurvedMotion | None = CurvedMotion(motion, candidate.control)
     else:
-        curve = CurvedMotion(motion, candidate.control)
+        curve = curve_along(problem, motion, candidate.control)
     if curve is None:
         tried.append(None)
         return None
@@ -123,6 +123,22 @@ def _attempt(
         sum(len(each.refused) for each in before),
         sum(each.prover.queries for each in before),
     )
+
+
+def curve_along(problem: Problem, motion: Motion, control: ControlPoints) -> CurvedMotion | None:
+    """The curve with control points, these moved a little where an attitude is to be reached.
+
+    Args:
+        problem: what was planned.
+        motion: the motion of the plan.
+        control: control points on its path or near it.
+
+    Returns:
+        The curve; None where it does not come to arrive at the attitude that is demanded.
+    """
+    if problem.reach_attitude and not motion.joints_are_straight:
+        return curve_to_attitude(motion, control, problem.goal[3:7])
+    return CurvedMotion(motion, control)
 
 
 def _bends(control: ControlPoints) -> Flags:

@@ -28,7 +28,7 @@ def positions(offsets, step):
 @pytest.mark.parametrize("axes", [1, 2])
 def test_the_change_is_that_of_the_polygon(axes):
     offsets = np.random.default_rng(axes).normal(size=(9, axes))
-    programme = Programme(8, 0.5, np.full(axes, 3.0))
+    programme = Programme.lateral(8, 0.5, np.full(axes, 3.0))
     change = velocity_change(positions(offsets, 0.5))
     assert 8 * programme.change(offsets) == pytest.approx(change, rel=1e-14)
 
@@ -36,7 +36,7 @@ def test_the_change_is_that_of_the_polygon(axes):
 def test_without_clearances_the_way_becomes_straight():
     offsets = np.zeros((9, 1))
     offsets[1:-1] = np.random.default_rng(0).normal(size=(7, 1))
-    programme = Programme(8, 0.5, np.array([5.0]))
+    programme = Programme.lateral(8, 0.5, np.array([5.0]))
     found = programme.best(offsets, NO_CUTS, 10.0)
     assert found == pytest.approx(0.0, abs=1e-7)
     near = programme.best(offsets, NO_CUTS, 0.1)
@@ -46,7 +46,7 @@ def test_without_clearances_the_way_becomes_straight():
 
 def test_past_one_wall_in_the_plane_two_turns_at_most_are_made():
     """A wall of height 1 at the middle: to the side at once, one turn there."""
-    programme, still = Programme(8, 0.5, np.array([5.0])), np.zeros((9, 1))
+    programme, still = Programme.lateral(8, 0.5, np.array([5.0])), np.zeros((9, 1))
     found = programme.best(still, cuts_at([4], [[1.0]], [-1.0]), 10.0)
     assert found[4, 0] == pytest.approx(1.0, abs=1e-7)
     tent = np.interp(np.arange(9), [0, 4, 8], [0, 1, 0])[:, None]
@@ -60,7 +60,7 @@ def test_in_space_it_agrees_with_a_general_solver(seed):
     slopes = rng.normal(size=(5, 2))
     slopes /= np.linalg.norm(slopes, axis=1)[:, None]
     values = rng.uniform(-0.6, 0.2, 5)
-    programme = Programme(6, 0.3, np.full(2, 9.0))
+    programme = Programme.lateral(6, 0.3, np.full(2, 9.0))
     found = programme.best(np.zeros((7, 2)), cuts_at(points, slopes, values), 9.0)
     assert np.all(values + np.sum(slopes * found[points], axis=1) >= -1e-7)
 
@@ -76,7 +76,7 @@ def test_in_space_it_agrees_with_a_general_solver(seed):
 
 
 def test_a_clearance_that_cannot_be_had_is_missed_by_as_little_as_possible():
-    programme, still = Programme(4, 1.0, np.array([0.5])), np.zeros((5, 1))
+    programme, still = Programme.lateral(4, 1.0, np.array([0.5])), np.zeros((5, 1))
     found = programme.best(still, cuts_at([2], [[1.0]], [-2.0]), 9.0)
     assert found[2, 0] == pytest.approx(0.5, abs=1e-9)  # the rim
 
@@ -87,6 +87,6 @@ def test_many_clearances_at_one_station_all_count():
     slopes = np.zeros((9, 4, 1))
     slopes[:, 0, 0] = np.linspace(1.0, 0.1, 9)  # the last needs 1 m, the nearest ones 0.5 m
     cuts = Cuts(points, slopes, values, np.zeros(9, dtype=int))
-    found = Programme(4, 1.0, np.array([9.0])).best(np.zeros((5, 1)), cuts, 9.0)
+    found = Programme.lateral(4, 1.0, np.array([9.0])).best(np.zeros((5, 1)), cuts, 9.0)
     needed = np.max(-values / slopes[:, 0, 0])
     assert found[2, 0] == pytest.approx(needed, abs=1e-6)
