@@ -100,10 +100,10 @@ def test_displacements_keep_to_their_directions(past_the_ball):
 
 
 def test_the_window_of_the_base_is_kept():
-    low, high = (-0.5, -0.9, -0.2), (4.5, 0.9, 0.2)
+    low, high = (-0.5, -0.9, -0.2), (4.5, 0.005, 0.2)
     problem = free_problem(fp.Scene([], []), window=(low, high))
     robot = problem.robot
-    goal, positions = problem.goal, np.array([[0, 0, 0], [2.0, 0.89, 0.1], [4.0, 0, 0]])
+    goal, positions = problem.goal, np.array([[0, 0, 0], [2.0, -0.89, 0.1], [4.0, 0, 0]])
     ends = robot.joint_values(np.array([problem.start, goal]))
     joints = ends[[0, 1, 1]]
     motion = Motion(robot, problem.mode, problem.start, goal, positions, joints)
