@@ -74,7 +74,8 @@ def joints_are_proven(problem: Problem, curve: CurvedMotion) -> bool:
         curve: the curve.
     """
     prover = Prover(curve, problem.obstacles, problem.tolerance)
-    return not np.any(_outside(problem, curve) | _not_free(prover.self_verdicts()))
+    apart = all(verdict.free for verdict in prover.self_verdicts())
+    return apart and not np.any(_outside(problem, curve))
 
 
 def _not_free(verdicts: list[Verdict]) -> Flags:
