@@ -95,6 +95,7 @@ if TYPE_CHECKING:
         TreeCycle,
     )
     from ffsr_plan.tree_search.tree_planner import TreePlanner
+    from ffsr_plan.verification.flights.verify_flight import FlightReport
     from ffsr_plan.verification.verify import Report
 
 __version__ = "0.2.0.dev0"
@@ -116,6 +117,7 @@ __all__ = [
     "Cycle",
     "EdgeProof",
     "FfsrPlanError",
+    "FlightReport",
     "FuelFigures",
     "GoalInCollision",
     "GoalPoseIgnored",
@@ -268,6 +270,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "TreeCycle",
     ),
     "tree_search.tree_planner": ("TreePlanner",),
+    "verification.flights.verify_flight": ("FlightReport",),
     "verification.verify": ("Report",),
 }
 _HOME = {name: module for module, names in _NAMES.items() for name in names}

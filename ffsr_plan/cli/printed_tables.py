@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ffsr_plan.cli.step_times import StepTimes
     from ffsr_plan.plans.plan_data import PlanData
     from ffsr_plan.robots.summary import RobotSummary
+    from ffsr_plan.verification.flights.verify_flight import FlightReport
     from ffsr_plan.verification.verify import Report
 
 
@@ -43,9 +44,9 @@ def times_table(times: StepTimes) -> Table:
     return _two_columns(times.rows(), "Time taken")
 
 
-def flight_table(flight: FlightFigures) -> Table:
-    """A timed plan: duration, delta-v and peak loads."""
-    return _two_columns(flight_rows(flight))
+def flight_table(flight: FlightFigures, report: FlightReport) -> Table:
+    """A timed plan: duration, delta-v, peak loads, and its verification."""
+    return _two_columns([*flight_rows(flight), *flight_report_rows(report)])
 
 
 def robot_table(robots: Iterable[RobotSummary]) -> Table:
@@ -89,6 +90,20 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
         yield "  wheel momentum error", f"{report.wheel_momentum_error:.1e} relative"
     if report.unchecked:
         yield "  links not checked", ", ".join(report.unchecked)
+    yield "  not checked", "\n".join(report.not_checked)
+
+
+def flight_report_rows(report: FlightReport) -> Iterator[tuple[str, str]]:
+    """Names and values of the verification report of a flight."""
+    yield "verified", "yes" if report.ok else "NO, see below"
+    base = f"{report.position_error:.1e} m and {report.attitude_error:.1e} rad"
+    yield "  base", f"within {base} of its integration"
+    worst = max(report.thrust_error, report.torque_error)
+    yield "  thrust and torques", f"within {worst:.1e} of their peaks by inverse dynamics"
+    for name, share in report.limits.items():
+        yield f"  {name}", f"{share:.1%} of the limit"
+    if np.isfinite(report.least_clearance):
+        yield "  least clearance", f"{report.least_clearance:.6f} m at {report.samples} samples"
     yield "  not checked", "\n".join(report.not_checked)
 
 

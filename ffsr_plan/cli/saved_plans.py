@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ffsr_plan.cli.flight_figures import flight_figures
@@ -99,6 +100,7 @@ def time_and_report(
 
     Raises:
         InvalidInput: no such plan, limits that are not allowed, or a file that cannot be written.
+        PlanNotVerified: the flight does not verify; it is written and printed before.
     """
     for option, path in files.named().items():
         check_replacement(option, path, force)
@@ -107,17 +109,22 @@ def time_and_report(
     with times.step("timing", "timing"):
         flight = plan.timed(**limits)
         figures = flight_figures(flight)
+    with times.step("verification", "verification"):
+        report = flight.verify()
     if files.named():
         with times.step("writing", "files"):
             files.write(flight)
     output.show(
-        lambda: [flight_table(figures)],
+        lambda: [flight_table(figures, report)],
         lambda: {
             "flight": figures._asdict(),
+            "report": asdict(report),
             "times": times.seconds(),
             "files": list(files.named().values()),
         },
     )
+    if not report.ok:
+        raise PlanNotVerified(report.problems)
 
 
 def _loaded(plan_file: str, times: StepTimes) -> Plan:

@@ -28,6 +28,7 @@ from ffsr_plan.fuel.refinement import GROWTH, PROOFS, SPARE
 from ffsr_plan.fuel.stations import Stations, curve_stations, on_curve
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.fuel_figures import velocity_change
+from ffsr_plan.smoothing.curve_objective import edge_lengths
 from ffsr_plan.smoothing.curve_proof import joints_are_proven, prove_curve
 from ffsr_plan.smoothing.proven_curve import curve_along
 
@@ -166,12 +167,7 @@ def _centers(curve: CurvedMotion, edge: IntArray, time: Array) -> Array:
 
 def _equal_steps(problem: Problem, motion: Motion, count: int) -> Array:
     """(count + 1,) parameters on a motion, from 0 to its edges, at equal steps of length."""
-    metres, radians = problem.position_weight, problem.rotation_weight
-    weights = np.where(problem.robot.prismatic, metres, radians)
-    steps = np.hstack(
-        [metres * motion.base_steps(), weights * np.diff(motion.joint_values, axis=0)]
-    )
-    passed = np.append(0.0, np.cumsum(np.linalg.norm(steps, axis=1)))
+    passed = np.append(0.0, np.cumsum(edge_lengths(problem, motion)))
     places = np.linspace(0.0, passed[-1], count + 1)
     found: Array = np.interp(places, passed, np.arange(motion.edges + 1.0))
     return found

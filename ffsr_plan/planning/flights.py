@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
 
 from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
@@ -14,9 +15,35 @@ from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
 
+if TYPE_CHECKING:
+    from ffsr_plan.verification.flights.flown_flight import FlownFlight
+    from ffsr_plan.verification.flights.verify_flight import FlightReport
+
+
+class FlownPlan(FlightPictures):
+    """What flights of plans have in common: pictures and verification."""
+
+    def verify(self, samples: int | None = None) -> FlightReport:
+        """Check the flight by code of its own: motion, forces, limits and distances.
+
+        The motion is integrated again from rates, thrust and the conservation of momentum, forces
+        are those of Pinocchio's inverse dynamics, limits are looked at 100 times a step of the law,
+        and distances are measured at dense samples by the code that also verifies plans.
+
+        Args:
+            samples: least number of equal time steps at which distances are measured, 2 000 by
+                default. Where a contact could fit between two of them, there are more.
+
+        Raises:
+            InvalidInput: `samples` is not a positive whole number, or too large.
+        """
+        from ffsr_plan.verification.flights.verify_flight import SAMPLES, verify_flight
+
+        return verify_flight(cast("FlownFlight", self), SAMPLES if samples is None else samples)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TimedPlan(FlightPictures, TimedMotion):
+class TimedPlan(FlownPlan, TimedMotion):
     """A plan flown on its path as fast as limits allow; made by `Plan.timed(corners="rest")`.
 
     It rests at corners of the path, or passes them with pulses of the thrusters, at the highest
@@ -45,7 +72,7 @@ class TimedPlan(FlightPictures, TimedMotion):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SmoothFlight(FlightPictures, CurveFlight):
+class SmoothFlight(FlownPlan, CurveFlight):
     """A plan flown along its smooth curve, at rest at its ends only; made by `Plan.timed`.
 
     Attributes:

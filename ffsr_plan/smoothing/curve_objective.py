@@ -8,6 +8,7 @@ from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.curves.splines import evaluate
+from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.objective import objective
 from ffsr_plan.problem.problem import Problem
 
@@ -44,6 +45,22 @@ def curve_lengths(problem: Problem, curve: CurvedMotion) -> Array:
         squares = np.sum(((way - progress * nominal) * weights) ** 2, axis=1)
         squares += (problem.straight_length * progress[:, 0]) ** 2
     return np.asarray(np.sqrt(squares).reshape(m, _SAMPLES) / _SAMPLES)
+
+
+def edge_lengths(problem: Problem, motion: Motion) -> Array:
+    """(m,) Euclidean lengths of a motion's edges in base position, wheels' turn and joints [m].
+
+    Args:
+        problem: gives the weights.
+        motion: the motion, m edges.
+    """
+    metres, radians = problem.position_weight, problem.rotation_weight
+    weights = np.where(problem.robot.prismatic, metres, radians)
+    steps = [metres * motion.base_steps(), weights * np.diff(motion.joint_values, axis=0)]
+    if problem.mode.has_wheels:
+        steps.append(radians * motion.turns)
+    lengths: Array = np.linalg.norm(np.hstack(steps), axis=1)
+    return lengths
 
 
 def curve_objective(problem: Problem, curve: CurvedMotion, nodes: Array, lengths: Array) -> float:

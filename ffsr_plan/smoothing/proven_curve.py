@@ -2,7 +2,8 @@
 
 Tried in turn, each only where the one before was refused:
 
-spline          the B-spline whose control points are the path's nodes: it cuts corners a little
+spline          the B-spline whose control points are the path's nodes, without those that are too
+                close together, at which it would nearly rest: it cuts corners a little
 refined spline  with more control points, in the middles of edges of the path: first beside what was
                 refused, then beside every bend, as joints that cut corners turn the base otherwise
 through         the spline that passes through the nodes and swings outwards between them
@@ -25,12 +26,14 @@ from ffsr_plan.curves.control_points import ControlPoints, control_points_on
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.smoothing.curve_objective import edge_lengths
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.goal_attitude import curve_to_attitude
 
 Kind = Literal["spline", "refined spline", "through", "with rests", "least fuel"]
 """What a smooth curve is: see `proven_curve`, and for the last `fuel.curve_refinement`."""
 _BESIDE_REFUSED, _ROUNDS = 3, 7  # rounds of refinement beside what was refused, and in all
+_LEAST_SHARE = 0.1  # of the mean edge, by which nodes that are control points are apart
 _NO_BEND = 1e-9  # second difference of control points [m or rad] that counts as none
 _LEAST_TOLERANCE = 1e-7  # [m] of the path itself, which may be closer than the problem's
 
@@ -74,9 +77,9 @@ def proven_curve(problem: Problem, motion: Motion) -> ProvenCurve:
     """
     tried: list[CurveProof | None] = []
     whole = np.arange(motion.edges + 1.0)
-    parameters = whole
+    parameters = _apart(edge_lengths(problem, motion))
     for attempt in range(1 + _ROUNDS):
-        nodes = np.searchsorted(parameters, whole).astype(np.float64)
+        nodes = np.interp(whole, parameters, np.arange(float(len(parameters))))
         control = control_points_on(motion, parameters)
         spline = _Candidate("refined spline" if attempt else "spline", control, nodes)
         found = _attempt(problem, motion, spline, tried)
@@ -139,6 +142,20 @@ def curve_along(problem: Problem, motion: Motion, control: ControlPoints) -> Cur
     if problem.reach_attitude and not motion.joints_are_straight:
         return curve_to_attitude(motion, control, problem.goal[3:7])
     return CurvedMotion(motion, control)
+
+
+def _apart(lengths: Array) -> Array:
+    """(k + 1,) numbers of nodes of a path, its ends included, that are not too close together.
+
+    Args:
+        lengths: (m,) of its edges [m].
+    """
+    passed = np.append(0.0, np.cumsum(lengths))
+    least, kept = _LEAST_SHARE * passed[-1] / len(lengths), [0]
+    for node in range(1, len(lengths)):
+        if min(passed[node] - passed[kept[-1]], passed[-1] - passed[node]) >= least:
+            kept.append(node)
+    return np.array([*kept, len(lengths)], dtype=np.float64)
 
 
 def _bends(control: ControlPoints) -> Flags:

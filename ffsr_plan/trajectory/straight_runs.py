@@ -28,6 +28,7 @@ class StraightRuns(NamedTuple):
 
     Attributes:
         corners: (m + 1,) x at the nodes.
+        scales: (m,) their differences, edge by edge, which have no rounding error of the sum.
         first: (r,) first edge of each run.
         last: (r,) last edge of each run.
         base: (r, 3) displacement of the base origin by thrusters, world axes [m per unit of x].
@@ -36,6 +37,7 @@ class StraightRuns(NamedTuple):
     """
 
     corners: Array
+    scales: Array
     first: IntArray
     last: IntArray
     base: Array
@@ -76,7 +78,7 @@ class StraightRuns(NamedTuple):
         """
         edge = np.searchsorted(self.corners, x, side="right") - 1
         edge = np.clip(edge, self.first[run], self.last[run])
-        scale = self.corners[edge + 1] - self.corners[edge]
+        scale = self.scales[edge]
         return edge, np.clip((x - self.corners[edge]) / scale, 0.0, 1.0), scale
 
 
@@ -106,6 +108,7 @@ def straight_runs(motion: Motion) -> StraightRuns:
     along = directions[starts]
     return StraightRuns(
         corners=np.concatenate([[0.0], np.cumsum(scale)]),
+        scales=scale,
         first=moving[starts],
         last=moving[ends],
         base=along[:, :3],

@@ -16,6 +16,7 @@ from ffsr_plan.verification.urdf_reading import Bodies, pose
 
 if TYPE_CHECKING:
     from ffsr_plan.plans.plan_data import PlanData
+    from ffsr_plan.robots.robot import SpaceRobot
 
 
 class Samples(NamedTuple):
@@ -72,21 +73,8 @@ class Sampler:
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on edges (N,)."""
         q = self._plan.at(np.minimum((edge + time) / self.edges, 1.0))
-        poses = base_frame_poses(self._plan, self._bodies, q)
-        placed = [poses[shape.link] @ shape.placement for shape in self._bodies.shapes]
-        frames = np.stack(placed, axis=1) if placed else np.zeros((len(q), 0, 4, 4))
-        momentum = momentum_map(self._bodies, self._plan.problem.robot.joint_names, poses)
-        turns = base_turns(q)
-        places = q[:, :3] - self._origin
-        return Samples(
-            base_turns=turns,
-            base_places=places,
-            turns=np.ascontiguousarray(frames[..., :3, :3]),
-            places=np.ascontiguousarray(frames[..., :3, 3]),
-            momentum=momentum,
-            centers_of_mass=places + np.einsum("nij,nj->ni", turns, momentum.centers),
-            deviation=self._deviation(edge, time, q),
-        )
+        samples = samples_of(self._plan.problem.robot, self._bodies, self._origin, q)
+        return samples._replace(deviation=self._deviation(edge, time, q))
 
     def _deviation(self, edge: IntArray, time: Array, q: Array) -> Array:
         """(N,) largest difference from straight lines between the corners."""
@@ -100,23 +88,47 @@ class Sampler:
         return np.max(np.abs(apart), axis=1, initial=0.0)
 
 
+def samples_of(robot: SpaceRobot, bodies: Bodies, origin: Array, q: Array) -> Samples:
+    """Configurations as samples, without any deviation.
+
+    Args:
+        robot: the robot, for the names of the joints.
+        bodies: the robot, from its URDF.
+        origin: (3,) point from which base positions are counted [m].
+        q: (N, nq) configurations.
+    """
+    poses = base_frame_poses(robot, bodies, q)
+    placed = [poses[shape.link] @ shape.placement for shape in bodies.shapes]
+    frames = np.stack(placed, axis=1) if placed else np.zeros((len(q), 0, 4, 4))
+    momentum = momentum_map(bodies, robot.joint_names, poses)
+    turns, places = base_turns(q), q[:, :3] - origin
+    return Samples(
+        base_turns=turns,
+        base_places=places,
+        turns=np.ascontiguousarray(frames[..., :3, :3]),
+        places=np.ascontiguousarray(frames[..., :3, 3]),
+        momentum=momentum,
+        centers_of_mass=places + np.einsum("nij,nj->ni", turns, momentum.centers),
+        deviation=np.zeros(len(q)),
+    )
+
+
 def base_turns(q: Array) -> Array:
     """(N, 3, 3) rotations of the base of configurations (N, nq)."""
     return pose(np.zeros((len(q), 3)), q[:, 3:7])[:, :3, :3]
 
 
-def base_frame_poses(plan: PlanData, bodies: Bodies, q: Array) -> dict[str, Array]:
+def base_frame_poses(robot: SpaceRobot, bodies: Bodies, q: Array) -> dict[str, Array]:
     """Poses of all links relative to the base.
 
     Args:
-        plan: the plan, for the names of the joints.
+        robot: the robot, for the names of the joints.
         bodies: the robot, from its URDF.
         q: (N, nq) configurations.
 
     Returns:
         (N, 4, 4) for each link by name, link axes to base axes.
     """
-    robot = plan.problem.robot
     values = robot.joint_values(q)
     joints = {name: values[:, k] for k, name in enumerate(robot.joint_names)}
     return bodies.link_poses(np.broadcast_to(np.eye(4), (len(q), 4, 4)), joints)

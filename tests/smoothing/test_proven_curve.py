@@ -135,3 +135,19 @@ def touching_sphere(robot, path, other):
         if found[0] > 3e-4:
             return sphere
     raise AssertionError("no sphere tells the two apart")
+
+
+def test_nodes_that_are_hardly_apart_do_not_stop_the_flight():
+    """A node just beside another one, or upon it, is none of the control points."""
+    problem, motion = corner(0.4)
+    beside = np.insert(
+        motion.positions, [3, 4, 4], [[2, 1e-6, 0], [2, 1, 0], [2, 1.001, 0]], axis=0
+    )
+    crowded = fp.Motion(problem.robot, "free-flying", problem.start, problem.goal, beside)
+    plain, found = (ladder.proven_curve(problem, each) for each in (motion, crowded))
+    control = found.proof.curve.control.positions
+    assert np.linalg.norm(np.diff(control, axis=0), axis=1).min() > 0.05
+    assert len(control) == len(plain.proof.curve.control.positions)
+    assert np.all(np.diff(found.nodes) >= 0.0)
+    assert found.nodes[[0, -1]].tolist() == [0.0, found.proof.curve.edges]
+    assert len(found.nodes) == len(beside)

@@ -28,9 +28,8 @@ def test_no_faster_way_passes_the_corners_than_the_one_found(seed):
     base, none = rng.normal(size=(count, 3)), np.zeros((count, 0))
     pulse = rng.uniform(0.1, 2.0)
     corners = np.concatenate([[0.0], np.cumsum(lengths)])
-    runs = StraightRuns(
-        corners, np.arange(count), np.arange(count), base, np.zeros((count, 3)), none
-    )
+    each = np.arange(count)
+    runs = StraightRuns(corners, lengths, each, each, base, np.zeros((count, 3)), none)
     at_once = PulseLimits(pulse, 1e12)
     law, speeds, _ = time_law(runs, (top, push, np.full(count, np.inf)), at_once)
     grid = np.concatenate([np.linspace(a, b, 300) for a, b in pairwise(corners)])
@@ -66,7 +65,8 @@ def test_speeds_between_runs_are_the_highest_that_pulses_leave(seed):
     push = np.minimum(strength / np.linalg.norm(base, axis=1), steepest)
     corners = np.concatenate([[0.0], np.cumsum(lengths)])
     each = np.arange(count)
-    runs = StraightRuns(corners, each, each, base, np.zeros((count, 3)), np.zeros((count, 0)))
+    none = np.zeros((count, 0))
+    runs = StraightRuns(corners, lengths, each, each, base, np.zeros((count, 3)), none)
     pulses = PulseLimits(velocity_jump, strength)
     _, speeds, lasting = time_law(runs, (top, push, np.full(count, np.inf)), pulses)
     rows, bounds = [], []

@@ -1,0 +1,1 @@
+"""Independent check of flights: motion, forces, limits and clearances over time."""
