@@ -84,8 +84,10 @@ def test_the_least_clearance_is_that_of_the_proof(fig2a_plan, flight):
 def test_an_attitude_that_does_not_react_is_noticed(flight):
     def still(states, _):
         q = states.configurations.copy()
-        q[:, 3:7] = q[0, 3:7]
-        return states._replace(configurations=q)
+        q[:, 3:7] = flight.problem.start[3:7]
+        v = states.velocities.copy()
+        v[:, 3:6] = 0.0
+        return states._replace(configurations=q, velocities=v)
 
     assert "rad from that of momentum conservation" in problems(flight, still)
 
@@ -173,8 +175,14 @@ def test_an_obstacle_in_the_way_is_named(flight):
     )
     other = replace(flight.problem, scene=scene)
     assert "an obstacle at" in problems(flight, problem=other)
-    thin = fp.Scene([middle], [1e-4])  # between two samples, but for those that are added
-    assert "an obstacle at" in problems(flight, problem=replace(flight.problem, scene=thin))
+
+
+def test_between_two_samples_a_contact_is_looked_for(flight):
+    quarter = flight.at([0.25 * flight.duration]).base_position[0]
+    thin = replace(flight.problem, scene=fp.Scene([quarter], [1e-3]))
+    report = verify_flight(Altered(flight, problem=thin), 2)
+    assert "an obstacle at" in "; ".join(report.problems)
+    assert report.samples > 3
 
 
 def test_links_that_touch_are_named(flight):
