@@ -9,88 +9,40 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ffsr_plan.core.checks import one_of, text, whole_number
 from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.checks import text, whole_number
 from ffsr_plan.core.cost_estimate import check_memory
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
+from ffsr_plan.planning.timing import Timing
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_summary import plan_rows
 from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_csv
-from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
 
 if TYPE_CHECKING:
     from ffsr_plan.display.web.page_server import PageServer
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.planning.smooth_plan import SmoothPlan
+    from ffsr_plan.trajectory.flight_limits import FlightLimits
     from ffsr_plan.verification.verify import Report
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Plan(PlanData):
+class Plan(Timing, PlanData):
     """A certified whole-body motion. Two plans are equal if all but the computing time is."""
 
-    def timed(
-        self,
-        *,
-        corners: str = "smooth",
-        duration: float | None = None,
-        joint_acceleration: PerJoint = None,
-        thruster_acceleration: float | None = None,
-        joint_velocity: PerJoint = None,
-        base_velocity: float | None = None,
-        joint_torque: PerJoint = None,
-        joint_jerk: PerJoint = None,
-        thruster_jerk: float | None = None,
-        turn_velocity: float | None = None,
-        turn_acceleration: float | None = None,
-        velocity_jump: float = 0.0,
+    def _flown(
+        self, limits: FlightLimits, corners: str, duration: float | None
     ) -> SmoothFlight | TimedPlan:
-        """The plan flown within limits, from rest at the start to rest at the goal.
+        from ffsr_plan.planning.flights import smooth_flight, timed_plan
 
-        The flight follows the proven smooth curve of `smooth`, or with `corners="rest"` exactly the
-        proven path, with a rest at every corner. A quantity without a value is not limited;
-        `joint_velocity`, `joint_acceleration` and `joint_jerk` default to the URDF's. Limits for
-        joints are one number, or numbers by name, and the URDF's for those not named.
-
-        Args:
-            corners: `smooth` or `rest`.
-            duration: of a smooth flight, the calmest that takes it [s]; by default the shortest.
-            joint_acceleration: of every joint that moves [rad/s^2 or m/s^2].
-            thruster_acceleration: thrust / mass [m/s^2]; refused where nothing moves the base.
-            joint_velocity: [rad/s or m/s].
-            base_velocity: of the base origin [m/s].
-            joint_torque: [N m or N].
-            joint_jerk: [rad/s^3 or m/s^3].
-            thruster_jerk: of the base origin [m/s^3].
-            turn_velocity: angular velocity of a base, refused without wheels [rad/s].
-            turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
-            velocity_jump: with `corners="rest"`, the change of the base's velocity by one pulse of
-                the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
-
-        Raises:
-            InvalidInput: a limit that cannot be or is missing, too short a duration, pulses that
-                cut corners by more than the clearance, or no motion at all.
-            UnprovenCurve: see `smooth`.
-        """
-        limits = read_limits(
-            self.problem.robot,
-            self.problem.mode,
-            joint_velocity=joint_velocity,
-            joint_acceleration=joint_acceleration,
-            joint_jerk=joint_jerk,
-            joint_torque=joint_torque,
-            base_velocity=base_velocity,
-            thruster_acceleration=thruster_acceleration,
-            thruster_jerk=thruster_jerk,
-            turn_velocity=turn_velocity,
-            turn_acceleration=turn_acceleration,
-            velocity_jump=velocity_jump,
-        )
-        from ffsr_plan.planning.flights import flown
-
-        return flown(self, limits, corners, duration)
+        if one_of("corners", corners, ("smooth", "rest")) == "smooth":
+            return smooth_flight(self.smooth(), limits, duration)
+        if duration is not None:
+            raise InvalidInput("duration", duration, "None with corners='rest'")
+        return timed_plan(self, limits)
 
     def smooth(self) -> SmoothPlan:
         """The plan along a smooth curve without corners, proven free as the plan is.

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.planning.flight_pictures import FlightPictures
-from ffsr_plan.planning.smooth_plan import SmoothPlan, smoothed
+from ffsr_plan.planning.smooth_data import SmoothPlanData
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
@@ -87,7 +86,7 @@ class SmoothFlight(FlownPlan, CurveFlight):
         limits: those that the flight keeps.
     """
 
-    smooth_plan: SmoothPlan
+    smooth_plan: SmoothPlanData
     limits: FlightLimits
 
     @property
@@ -96,22 +95,18 @@ class SmoothFlight(FlownPlan, CurveFlight):
         return self.smooth_plan.plan.problem
 
 
-def flown(
-    plan: PlanData, limits: FlightLimits, corners: str, duration: float | None
-) -> SmoothFlight | TimedPlan:
-    """A plan flown within limits; see `Plan.timed`."""
-    if one_of("corners", corners, ("smooth", "rest")) == "smooth":
-        if limits.velocity_jump > 0.0:
-            allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
-            raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
-        return smooth_flight(smoothed(plan), limits, duration)
-    if duration is not None:
-        raise InvalidInput("duration", duration, "None with corners='rest'")
+def timed_plan(plan: PlanData, limits: FlightLimits) -> TimedPlan:
+    """A plan flown within limits, with rests or pulses at its corners; see `Plan.timed`."""
     flight = timed(plan.motion, limits, plan.certificate.least_clearance)
     return TimedPlan(**vars(flight), problem=plan.problem, limits=limits)
 
 
-def smooth_flight(smooth: SmoothPlan, limits: FlightLimits, duration: float | None) -> SmoothFlight:
+def smooth_flight(
+    smooth: SmoothPlanData, limits: FlightLimits, duration: float | None
+) -> SmoothFlight:
     """A smooth plan flown within limits; see `Plan.timed`."""
+    if limits.velocity_jump > 0.0:
+        allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
+        raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
     flight = curve_flight(smooth.curve, limits, duration)
     return SmoothFlight(**vars(flight), smooth_plan=smooth, limits=limits)

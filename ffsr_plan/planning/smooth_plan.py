@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import finite_array, number
+from ffsr_plan.core.checks import number, one_of
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.formatting import html_table, proven
-from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.curves.smooth_curve import SmoothCurve
-from ffsr_plan.fuel.curve_refinement import curve_change, refined_curve
+from ffsr_plan.fuel.curve_refinement import refined_curve
 from ffsr_plan.lattice.certificate import Certificate
+from ffsr_plan.planning.smooth_data import SmoothPlanData
+from ffsr_plan.planning.timing import Timing
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.smoothing.curve_objective import curve_lengths, curve_objective
 from ffsr_plan.smoothing.curve_proof import prove_curve
-from ffsr_plan.smoothing.proven_curve import Kind, ProvenCurve, proven_curve
+from ffsr_plan.smoothing.proven_curve import ProvenCurve, proven_curve
+
+if TYPE_CHECKING:
+    from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
+    from ffsr_plan.trajectory.flight_limits import FlightLimits
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SmoothPlan:
+class SmoothPlan(Timing, SmoothPlanData):
     """A whole-body motion without corners, proven free of collisions, the base's reaction included.
 
     Velocity and acceleration are continuous in the curve's parameter. Start and goal are those of
@@ -44,84 +47,14 @@ class SmoothPlan:
             along the curve.
     """
 
-    plan: PlanData
-    curve: SmoothCurve
-    kind: Kind
-    nodes: Array
-    length: float
-    objective: float
-    clearances: Array
-    certificate: Certificate
+    def _flown(
+        self, limits: FlightLimits, corners: str, duration: float | None
+    ) -> SmoothFlight | TimedPlan:
+        from ffsr_plan.planning.flights import smooth_flight
 
-    @cached_property
-    def change(self) -> float:
-        """Change of the centre of mass's velocity for a flight of unit duration [m].
-
-        At constant pace along the curve, from rest to rest: divided by a duration it is the delta-v
-        [m/s]. 0 where nothing moves the base.
-        """
-        return 0.0 if self.plan.problem.mode.floats else curve_change(self.curve.motion)
-
-    def delta_v(self, duration: float) -> float:
-        """Delta-v of a flight at constant pace [m/s].
-
-        Args:
-            duration: of the flight [s].
-
-        Raises:
-            InvalidInput: a duration that is not positive.
-        """
-        return self.change / number("duration", duration, above=0.0)
-
-    def at(self, s: ArrayLike) -> Array:
-        """Configuration at path parameter `s`, the reaction of the base included.
-
-        Args:
-            s: a number from 0 to 1, or an array (N,) of them; piece i of n begins at i / n.
-
-        Returns:
-            (nq,), or (N, nq) for an array: base pose in the world [m, quaternion xyzw] and joints.
-
-        Raises:
-            InvalidInput: s outside [0, 1] or not finite.
-        """
-        parameter = finite_array("s", s, np.shape(s))
-        if np.any((parameter < 0.0) | (parameter > 1.0)):
-            raise InvalidInput("s", s, "path parameters from 0 to 1")
-        scaled = np.atleast_1d(parameter).ravel() * self.curve.pieces
-        edge = np.minimum(scaled.astype(np.int64), self.curve.pieces - 1)
-        q = self.curve.motion.at(edge, scaled - edge)
-        return q.reshape(*parameter.shape, self.plan.problem.robot.model.nq)
-
-    @property
-    def arrival_attitude_error(self) -> float | None:
-        """Angle [rad] from the attitude reached to the goal's; None where none is demanded."""
-        if not self.plan.problem.reach_attitude:
-            return None
-        reached = self.curve.motion.attitudes[-1]
-        return float(angle_between(reached, self.plan.problem.goal[3:7]))
-
-    def __repr__(self) -> str:
-        problem = self.plan.problem
-        clearance = f"proven clearance {proven(self.certificate.least_clearance)}"
-        parts = [
-            problem.robot.name,
-            str(problem.mode),
-            self.kind,
-            f"L {self.length:.4g} m",
-            f"F {self.objective:.6g}",
-            clearance if len(problem.scene) else "no obstacles",
-        ]
-        return f"SmoothPlan({', '.join(parts)})"
-
-    def _repr_html_(self) -> str:
-        rows = {
-            "curve": f"{self.kind}, {self.curve.pieces} pieces",
-            "length L": f"{self.length:.4f} m",
-            "objective F": f"{self.objective:.4f}",
-            "proven along the motion": f"at least {proven(self.certificate.least_clearance)}",
-        }
-        return html_table("SmoothPlan", rows)
+        if one_of("corners", corners, ("smooth", "rest")) == "rest":
+            raise InvalidInput("corners", corners, "smooth: a smooth plan has none to rest at")
+        return smooth_flight(self, limits, duration)
 
 
 def smoothed(plan: PlanData) -> SmoothPlan:

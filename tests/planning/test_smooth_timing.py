@@ -53,3 +53,23 @@ def test_thrusters_of_a_floating_robot_cannot_be_limited(robot):
     assert plan.timed(joint_acceleration=0.05).delta_v == 0.0
     with pytest.raises(fp.InvalidInput, match=r"thruster_acceleration.*no thrusters"):
         plan.timed(**LIMITS)
+
+
+def test_a_smooth_plan_can_be_flown_itself(fig2a_plan, flight):
+    smooth = fig2a_plan.smooth()
+    again = smooth.timed(**LIMITS)
+    assert again.smooth_plan is smooth
+    assert again.duration == flight.duration
+    with pytest.raises(fp.InvalidInput, match=r"corners.*none to rest at"):
+        smooth.timed(corners="rest", **LIMITS)
+    with pytest.raises(fp.InvalidInput, match=r"velocity_jump.*corners='rest'"):
+        smooth.timed(velocity_jump=0.1, **LIMITS)
+
+
+def test_a_curve_of_least_fuel_flies_with_the_delta_v_that_it_promises(fig2a_plan):
+    curve = fig2a_plan.least_fuel(margin=0.02)
+    flight = curve.timed(duration=400.0, **LIMITS)
+    assert flight.smooth_plan.kind == "least fuel"
+    assert flight.delta_v == pytest.approx(curve.delta_v(400.0), rel=0.02)
+    assert flight.delta_v < 0.5 * fig2a_plan.timed(duration=400.0, **LIMITS).delta_v
+    assert flight.verify().ok

@@ -190,7 +190,7 @@ def test_the_interface_is_covered(calls):
     made_by_the_package = {
         "Branches", "Certificate", "Clearance", "Components", "Counts", "CurvePoints",
         "CurvedMotion", "Cycle", "EdgeProof",
-        "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan",
+        "FlightReport", "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan",
         "Replacement", "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",

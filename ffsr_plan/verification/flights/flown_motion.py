@@ -148,7 +148,7 @@ def _turns(states: States) -> Array:
 
 def _pairs(values: Array) -> Array:
     """(P, 2, k) of values (2 P, k) at the Gauss points."""
-    return values.reshape(-1, 2, values.shape[1])
+    return values.reshape(len(values) // 2, 2, values.shape[1])
 
 
 def _summed(steps: Array) -> Array:
