@@ -10,7 +10,7 @@ import pytest
 
 from tests.helpers.mutated_scenario_runs import MOST_SECONDS
 
-SEED, COUNT = 12, 340
+SEED, COUNT = 12, 380
 
 
 @pytest.fixture(scope="module")
