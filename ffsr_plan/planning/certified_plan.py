@@ -22,6 +22,7 @@ from ffsr_plan.trajectory.flight_limits import PerJoint, read_limits
 
 if TYPE_CHECKING:
     from ffsr_plan.display.web.page_server import PageServer
+    from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.planning.smooth_plan import SmoothPlan
     from ffsr_plan.verification.verify import Report
@@ -46,6 +47,7 @@ class Plan(PlanData):
         turn_velocity: float | None = None,
         turn_acceleration: float | None = None,
         velocity_jump: float = 0.0,
+        meeting: Meeting | None = None,
     ) -> SmoothFlight | TimedPlan:
         """The plan flown within limits, from rest at the start to rest at the goal.
 
@@ -69,11 +71,14 @@ class Plan(PlanData):
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
             velocity_jump: with `corners="rest"`, the change of the base's velocity by one pulse of
                 the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
+            meeting: what a frame arrives with, and when, instead of a rest at the goal. Jerk cannot
+                be limited then; a goal attitude of the base that the problem demands is given up.
 
         Raises:
             InvalidInput: a limit that cannot be or is missing, a duration shorter than the fastest
-                flight, pulses that cut corners by more than the clearance, or no motion at all.
-            UnprovenCurve: see `smooth`.
+                flight, pulses that cut corners by more than the clearance, no motion at all, or a
+                meeting that cannot be: a twist beyond the mode or the limits, or too early.
+            UnprovenCurve: see `smooth`; or no curve that meets could be proven.
         """
         limits = read_limits(
             self.problem.robot,
@@ -91,7 +96,7 @@ class Plan(PlanData):
         )
         from ffsr_plan.planning.flights import flown
 
-        return flown(self, limits, corners, duration)
+        return flown(self, limits, corners, duration, meeting)
 
     def smooth(self) -> SmoothPlan:
         """The plan along a smooth curve without corners, proven free as the plan is.

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.planning.flight_pictures import FlightPictures
-from ffsr_plan.planning.smooth_plan import SmoothPlan, smoothed
+from ffsr_plan.planning.smooth_plan import SmoothPlan, smooth_plan, smoothed
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
+
+if TYPE_CHECKING:
+    from ffsr_plan.meetings.meeting import Meeting
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,20 +52,26 @@ class TimedPlan(FlightPictures, TimedMotion):
 class SmoothFlight(FlightPictures, CurveFlight):
     """A plan flown along its smooth curve, at rest at its ends only; made by `Plan.timed`.
 
+    With a meeting it is not at rest at its end.
+
     Attributes:
         curve: the curve.
         delta_v: velocity change that the thrusters produce in translation: the integral of
             |thrust| / mass [m/s].
         straight_delta_v: what the same change of place needs in the same time and with the same
             limit on thrust along a straight line, if nothing is in its way: one push, a coast and
-            one push against it [m/s]. No flight from rest to rest needs less.
+            one push against it [m/s]. No flight from rest to rest needs less. With a meeting, two
+            pulses that bring the centre of mass to its place and its velocity on arrival, with no
+            limit on thrust: no flight that meets needs less.
         smooth_plan: the plan along the curve, with its proof and its kind. A curve of the kind
             `with rests` has them where its path bends.
         limits: those that the flight keeps.
+        meeting: what it arrives with; None for a rest.
     """
 
     smooth_plan: SmoothPlan
     limits: FlightLimits
+    meeting: Meeting | None = None
 
     @property
     def problem(self) -> Problem:  # type: ignore[override]  # handed on, not kept twice
@@ -70,9 +80,15 @@ class SmoothFlight(FlightPictures, CurveFlight):
 
 
 def flown(
-    plan: PlanData, limits: FlightLimits, corners: str, duration: float | None
+    plan: PlanData,
+    limits: FlightLimits,
+    corners: str,
+    duration: float | None,
+    meeting: Meeting | None = None,
 ) -> SmoothFlight | TimedPlan:
     """A plan flown within limits; see `Plan.timed`."""
+    if meeting is not None:
+        return _met(plan, limits, corners, duration, meeting)
     if one_of("corners", corners, ("smooth", "rest")) == "smooth":
         if limits.velocity_jump > 0.0:
             allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
@@ -88,3 +104,27 @@ def smooth_flight(smooth: SmoothPlan, limits: FlightLimits, duration: float | No
     """A smooth plan flown within limits; see `Plan.timed`."""
     flight = curve_flight(smooth.curve, limits, duration)
     return SmoothFlight(**vars(flight), smooth_plan=smooth, limits=limits)
+
+
+def _met(
+    plan: PlanData, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting
+) -> SmoothFlight:
+    """A plan flown to a meeting."""
+    from ffsr_plan.meetings.meeting import Meeting
+    from ffsr_plan.meetings.meeting_flight import meeting_flight
+
+    if not isinstance(meeting, Meeting):
+        raise InvalidInput("meeting", meeting, "a Meeting or None")
+    if one_of("corners", corners, ("smooth", "rest")) != "smooth":
+        raise InvalidInput("corners", corners, "'smooth' with a meeting")
+    if duration is not None:
+        raise InvalidInput("duration", duration, "None with a meeting, whose `at` gives it")
+    if limits.velocity_jump > 0.0:
+        raise InvalidInput("velocity_jump", limits.velocity_jump, "0 with a meeting")
+    flight, proven = meeting_flight(plan.problem, plan.motion, meeting, limits)
+    return SmoothFlight(
+        **vars(flight),
+        smooth_plan=smooth_plan(plan, proven),
+        limits=limits,
+        meeting=meeting,
+    )

@@ -24,14 +24,14 @@ class SmoothPlan:
     """A whole-body motion without corners, proven free of collisions, the base's reaction included.
 
     Velocity and acceleration are continuous in the curve's parameter. Start and goal are those of
-    the plan; a goal attitude that is demanded is reached again.
+    the plan; a goal attitude that is demanded is reached again. That of a meeting ends with it.
 
     Attributes:
         plan: the plan that was smoothed.
         curve: the curve. Its parameter runs from 0 to the number of its pieces.
         kind: what the curve is: a `spline` whose control points are the plan's nodes, a `refined
-            spline` with more of them, the spline `through` the nodes, or the plan's path `with
-            rests` at its bends.
+            spline` with more of them, the spline `through` the nodes, the plan's path `with rests`
+            at its bends, or a spline that ends with a `meeting`.
         nodes: (m + 1,) parameters of the curve that belong to the plan's nodes.
         length: L by its definition for paths [m]; shorter than the plan's but for `through`.
         objective: F by its definition for paths [length units]. It may be a little larger than the
@@ -110,8 +110,17 @@ def smoothed(plan: PlanData) -> SmoothPlan:
     Raises:
         UnprovenCurve: nothing could be proven, not even the plan's path with rests.
     """
+    return smooth_plan(plan, proven_curve(plan.problem, plan.motion))
+
+
+def smooth_plan(plan: PlanData, found: ProvenCurve) -> SmoothPlan:
+    """A plan along a curve that is proven.
+
+    Args:
+        plan: the plan.
+        found: the curve and its proof.
+    """
     problem = plan.problem
-    found = proven_curve(problem, plan.motion)
     curve = found.proof.curve
     lengths = curve_lengths(problem, curve)
     return SmoothPlan(

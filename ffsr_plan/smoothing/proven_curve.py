@@ -28,8 +28,8 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.goal_attitude import curve_to_attitude
 
-Kind = Literal["spline", "refined spline", "through", "with rests"]
-"""What a smooth curve is; see `proven_curve`."""
+Kind = Literal["spline", "refined spline", "through", "with rests", "meeting"]
+"""What a smooth curve is; see `proven_curve`, and `meetings` for the last."""
 _BESIDE_REFUSED, _ROUNDS = 3, 7  # rounds of refinement beside what was refused, and in all
 _NO_BEND = 1e-9  # second difference of control points [m or rad] that counts as none
 _LEAST_TOLERANCE = 1e-7  # [m] of the path itself, which may be closer than the problem's
