@@ -131,7 +131,9 @@ class Approach(NamedTuple):
 
     def _ending(self, points: Array, end: Array, rate: Array) -> Array:
         """Points (n + 1, k) displaced in the window, so that their curve has an end and a rate."""
-        u = np.maximum(np.arange(-self.pieces, 1.0) / (self.window * self.pieces) + 1.0, 0.0)[:, None]
+        u = np.maximum(np.arange(-self.pieces, 1.0) / (self.window * self.pieces) + 1.0, 0.0)[
+            :, None
+        ]
         whole, bow = u**2 * (3.0 - 2.0 * u), u**2 * (u - 1.0)
         points = points + whole * (end - points[-1])
         bows = (rate - (points[-1] - points[-2])) / (bow[-1] - bow[-2])

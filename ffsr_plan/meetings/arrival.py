@@ -127,7 +127,9 @@ class Arrival:
     def _reacting(self, q: Array) -> Array:
         """(6, nd) Jacobian of the frame with its base origin held; J of the module's docstring."""
         robot, axes = self.motion.robot, pin.LOCAL_WORLD_ALIGNED
-        whole = pin.computeFrameJacobian(robot.model, robot.model.createData(), q, self._frame, axes)
+        whole = pin.computeFrameJacobian(
+            robot.model, robot.model.createData(), q, self._frame, axes
+        )
         jacobian = np.array(whole[:, 6:])
         if self.motion.mode.attitude_reacts:
             jacobian += whole[:, 3:6] @ connection(robot, q)

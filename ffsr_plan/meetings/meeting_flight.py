@@ -1,8 +1,9 @@
 """A flight that meets a moving frame, along a curve that is proven free.
 
-Tried in turn: approaches that take a quarter of the curve, an eighth, a half and a sixteenth. Short
-ones stay close to the plan, long ones ask less of the thrusters. Of each, curves with more control
-points, which cut the plan's corners less, are tried where the proof refuses the first.
+Approaches may take a half of the curve, a quarter, an eighth or a sixteenth. Short ones stay close
+to the plan, long ones ask for less thrust. Those that can be on time are tried in turn, the one
+with the least delta-v first. Of each, curves with more control points, which cut the plan's corners
+less, are tried where the proof refuses the first.
 """
 
 from __future__ import annotations
@@ -12,19 +13,20 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.collision.contacts import named
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput, UnprovenCurve
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.meetings.approach import Approach
 from ffsr_plan.meetings.arrival import Arrival
 from ffsr_plan.meetings.meeting import Meeting
-from ffsr_plan.meetings.timed_approach import earliest, pieces_for, timed_approach
+from ffsr_plan.meetings.timed_approach import earliest, timed_approach
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.proven_curve import ProvenCurve
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 
-_WINDOWS = 0.25, 0.125, 0.5, 0.0625  # shares of the curve
+_WINDOWS = 0.25, 0.125, 0.5, 0.0625  # shares of the curve; of equals, the first is taken
 _FACTORS = 1, 2, 4  # of the number of control points
 
 
@@ -53,11 +55,9 @@ def meeting_flight(
     _refuse_jerk(limits, motion)
     arrival = Arrival(motion, meeting)
     refused: list[CurveProof] = []
-    pose_met = False
-    for window in _WINDOWS:
+    for window in _by_delta_v(arrival, limits):
         for factor in _FACTORS:
             found, flight = timed_approach(arrival, limits, meeting.at, window, factor)
-            pose_met = pose_met or found is not None
             if found is None or flight is None:
                 break
             proof = prove_curve(problem, found.curve, problem.tolerance)
@@ -65,14 +65,25 @@ def meeting_flight(
                 nodes = _nodes(arrival, window, proof.curve.edges)
                 return MeetingFlight(flight, _proven(proof, nodes, refused))
             refused.append(proof)
-    if not pose_met:
-        raise _pose_not_met(arrival)
-    if not refused:
-        raise _too_early(arrival, limits)
     raise _unproven(problem, motion, refused)
 
 
-def _nodes(arrival: Arrival, window: float, pieces: int) -> np.ndarray:
+def _by_delta_v(arrival: Arrival, limits: FlightLimits) -> list[float]:
+    """Windows of the approaches that can be on time.
+
+    Raises:
+        InvalidInput: none can.
+    """
+    at = arrival.meeting.at
+    tried = {window: timed_approach(arrival, limits, at, window) for window in _WINDOWS}
+    on_time = {window: each.flight.delta_v for window, each in tried.items() if each.flight}
+    if not on_time:
+        pose_met = any(each.found is not None for each in tried.values())
+        raise _too_early(arrival, limits) if pose_met else _pose_not_met(arrival)
+    return sorted(on_time, key=lambda window: on_time[window])
+
+
+def _nodes(arrival: Arrival, window: float, pieces: int) -> Array:
     """(m + 1,) parameters of the curve that belong to the nodes of the plan."""
     passed = Approach(arrival, pieces, window, 1.0).parameters()[:-1]
     nodes = np.interp(np.arange(arrival.motion.edges + 1.0), passed, np.arange(float(pieces)))
@@ -80,7 +91,7 @@ def _nodes(arrival: Arrival, window: float, pieces: int) -> np.ndarray:
     return nodes
 
 
-def _proven(proof: CurveProof, nodes: np.ndarray, refused: list[CurveProof]) -> ProvenCurve:
+def _proven(proof: CurveProof, nodes: Array, refused: list[CurveProof]) -> ProvenCurve:
     before = sum(len(each.refused) for each in refused)
     queries = sum(each.prover.queries for each in refused)
     return ProvenCurve("meeting", proof, nodes, before, queries)

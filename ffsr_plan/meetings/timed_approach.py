@@ -14,10 +14,9 @@ from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
 from ffsr_plan.smooth_flight.pace_search import EndSpeeds
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 
-EARLIEST_WINDOW = 0.5
-"""Share of the curve for an approach that brakes all along its second half: none is earlier."""
+_EARLIEST = 0.5  # share of the curve for an approach that brakes all along its second half
 _FEWEST, _IN_WINDOW = 32, 10  # pieces of a curve, and of its approach
-_SPEED = 0.9  # at the end, relative to the mean: the pace can rise above it until it is on time
+_SPEED = 0.95  # at the end, relative to the mean: the pace can rise above it until it is on time
 _LONGER, _MOST = 1.5, 40  # steps of a search, and their number
 _GOOD = 1.01  # relative, of the earliest time
 
@@ -34,7 +33,7 @@ class TimedApproach(NamedTuple):
     flight: CurveFlight | None
 
 
-def pieces_for(motion_edges: int, window: float, factor: int) -> int:
+def _pieces(motion_edges: int, window: float, factor: int) -> int:
     """Number of pieces of a curve: a multiple of the motion's edges, with enough for the window."""
     fewest = max(_FEWEST, int(np.ceil(_IN_WINDOW / window)))
     return factor * motion_edges * -(-fewest // motion_edges)
@@ -55,7 +54,7 @@ def timed_approach(
     Raises:
         InvalidInput: a limit that is needed and not given, or a twist that cannot be.
     """
-    pieces = pieces_for(arrival.motion.edges, window, factor)
+    pieces = _pieces(arrival.motion.edges, window, factor)
     speed = _SPEED * pieces / at
     found = Approach(arrival, pieces, window, speed).found()
     if found is None:
@@ -80,7 +79,7 @@ def earliest(arrival: Arrival, limits: FlightLimits, late: float) -> float | Non
     """
 
     def possible(time: float) -> bool:
-        return timed_approach(arrival, limits, time, EARLIEST_WINDOW).flight is not None
+        return timed_approach(arrival, limits, time, _EARLIEST).flight is not None
 
     early, time = late, late
     for _ in range(_MOST):
