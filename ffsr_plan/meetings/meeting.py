@@ -17,7 +17,9 @@ class Meeting:
     """A frame of the robot arrives with a given pose and twist at a given time; see `Plan.timed`.
 
     The twist is that of a target which the frame meets without a shock. Of the target nothing else
-    counts: it is no obstacle.
+    counts: it is no obstacle. The flight leaves the plan near its end, along a curve that is proven
+    free too, and a goal attitude of the base that the problem demands is given up. Jerk cannot be
+    limited.
 
     Attributes:
         frame: name of a link, joint or other frame of the model.

@@ -69,16 +69,14 @@ class Plan(PlanData):
             thruster_jerk: of the base origin [m/s^3].
             turn_velocity: angular velocity of a base, refused without wheels [rad/s].
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
-            velocity_jump: with `corners="rest"`, the change of the base's velocity by one pulse of
-                the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
-            meeting: what a frame arrives with, and when, instead of a rest at the goal. Jerk cannot
-                be limited then; a goal attitude of the base that the problem demands is given up.
+            velocity_jump: with `corners="rest"`, change of the base's velocity by one pulse of the
+                thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
+            meeting: what a frame arrives with, and when, instead of a rest; see `Meeting`.
 
         Raises:
-            InvalidInput: a limit that cannot be or is missing, a duration shorter than the fastest
-                flight, pulses that cut corners by more than the clearance, no motion at all, or a
-                meeting that cannot be: a twist beyond the mode or the limits, or too early.
-            UnprovenCurve: see `smooth`; or no curve that meets could be proven.
+            InvalidInput: a limit that cannot be or is missing, a duration or a meeting that cannot
+                be, pulses that cut corners by more than the clearance, or no motion at all.
+            UnprovenCurve: see `smooth`.
         """
         limits = read_limits(
             self.problem.robot,

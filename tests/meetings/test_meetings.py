@@ -20,7 +20,7 @@ def plan():
 def test_another_pose_than_the_plans_is_met(plan):
     frame, robot = "right_link_3", plan.problem.robot
     (old,) = frame_poses(robot, frame, plan.configurations[-1:])
-    position = old.translation + [0.1, -0.2, 0.0]
+    position = old.translation + np.array([0.1, -0.2, 0.0])
     angles = (0.3 + np.arctan2(old.rotation[1, 0], old.rotation[0, 0]), 0.0, 0.0)
     wanted = meeting_for(NAME, position=position, attitude=angles)
     flight = plan.timed(meeting=wanted, **LIMITS[MODE])

@@ -163,6 +163,6 @@ def test_a_law_that_does_not_end_at_rest_arrives_on_time_and_keeps_the_limits():
 
 def test_a_law_too_fast_at_its_end_for_a_long_time_names_the_longest(line):
     curve = curve_of(line)
-    with pytest.raises(InvalidInput, match="duration.*at most .* with these speeds at the ends"):
-        limits = limits_of(curve, thruster_acceleration=PUSH)
+    limits = limits_of(curve, thruster_acceleration=PUSH)
+    with pytest.raises(InvalidInput, match=r"duration.*at most .* with these speeds at the ends"):
         pace_within(curve, limits, 1e4, EndSpeeds(0.0, 0.2 / LENGTH))
