@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from ffsr_plan.lattice.certificate import Certificate, Counts
     from ffsr_plan.lattice.layered_lattice import LayeredLattice
     from ffsr_plan.lattice.roadmap import Roadmap
+    from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.planning.plan_and_refine import plan, refine
@@ -133,6 +134,7 @@ __all__ = [
     "LeastFuel",
     "LiveView",
     "MaxMinAntSystem",
+    "Meeting",
     "Mode",
     "Motion",
     "Mount",
@@ -232,6 +234,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "lattice.certificate": ("Certificate", "Counts"),
     "lattice.layered_lattice": ("LayeredLattice",),
     "lattice.roadmap": ("Roadmap",),
+    "meetings.meeting": ("Meeting",),
     "planning.certified_plan": ("Plan",),
     "planning.flights": ("SmoothFlight", "TimedPlan"),
     "planning.plan_and_refine": ("plan", "refine"),

@@ -34,13 +34,16 @@ class CurvedMotion:
         joint_values: (m + 1, nd) there [rad or m].
     """
 
-    def __init__(self, motion: Motion, control: ControlPoints) -> None:
+    def __init__(
+        self, motion: Motion, control: ControlPoints, *, joints_bend: bool = False
+    ) -> None:
         """The curve with given control points.
 
         Args:
             motion: a motion of the same robot in the same mode from the same start; where wheels
                 hold the attitude, or the joints follow a straight line, with the same rotation.
             control: the control points.
+            joints_bend: whether the joints leave the straight line that those of the motion follow.
 
         Raises:
             IntegrationError: the reaction along a piece cannot be integrated.
@@ -50,7 +53,7 @@ class CurvedMotion:
         turn = motion.turns.sum(axis=0) if self.mode.has_wheels else np.zeros(3)
         self.pieces = pieces_with(control.table, turn)
         values = self.pieces.values
-        self.joints_are_straight = motion.joints_are_straight
+        self.joints_are_straight = motion.joints_are_straight and not joints_bend
         self.reaction: Reaction | None = None
         if self.mode.attitude_reacts:
             self.reaction = (

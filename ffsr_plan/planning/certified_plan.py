@@ -23,6 +23,7 @@ from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_cs
 
 if TYPE_CHECKING:
     from ffsr_plan.display.web.page_server import PageServer
+    from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.planning.smooth_plan import SmoothPlan
     from ffsr_plan.trajectory.flight_limits import FlightLimits
@@ -34,10 +35,13 @@ class Plan(Timing, PlanData):
     """A certified whole-body motion. Two plans are equal if all but the computing time is."""
 
     def _flown(
-        self, limits: FlightLimits, corners: str, duration: float | None
+        self, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting | None
     ) -> SmoothFlight | TimedPlan:
         from ffsr_plan.planning.flights import smooth_flight, timed_plan
+        from ffsr_plan.planning.met_plan import met_plan
 
+        if meeting is not None:
+            return met_plan(self, limits, corners, duration, meeting)
         if one_of("corners", corners, ("smooth", "rest")) == "smooth":
             return smooth_flight(self.smooth(), limits, duration)
         if duration is not None:

@@ -15,6 +15,7 @@ from ffsr_plan.trajectory.flight_limits import FlightLimits
 from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
 
 if TYPE_CHECKING:
+    from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.verification.flights.flown_flight import FlownFlight
     from ffsr_plan.verification.flights.verify_flight import FlightReport
 
@@ -74,20 +75,26 @@ class TimedPlan(FlownPlan, TimedMotion):
 class SmoothFlight(FlownPlan, CurveFlight):
     """A plan flown along its smooth curve, at rest at its ends only; made by `Plan.timed`.
 
+    With a meeting it is not at rest at its end.
+
     Attributes:
         curve: the curve.
         delta_v: velocity change that the thrusters produce in translation: the integral of
             |thrust| / mass [m/s].
         straight_delta_v: what the same change of place needs in the same time and with the same
             limit on thrust along a straight line, if nothing is in its way: one push, a coast and
-            one push against it [m/s]. No flight from rest to rest needs less.
+            one push against it [m/s]. No flight from rest to rest needs less. With a meeting, two
+            pulses that bring the centre of mass to its place and its velocity on arrival, with no
+            limit on thrust: no flight that meets needs less.
         smooth_plan: the plan along the curve, with its proof and its kind. A curve of the kind
             `with rests` has them where its path bends.
         limits: those that the flight keeps.
+        meeting: what it arrives with; None for a rest.
     """
 
     smooth_plan: SmoothPlanData
     limits: FlightLimits
+    meeting: Meeting | None = None
 
     @property
     def problem(self) -> Problem:  # type: ignore[override]  # handed on, not kept twice

@@ -33,7 +33,7 @@ class SmoothPlanData:
         curve: the curve. Its parameter runs from 0 to the number of its pieces.
         kind: what the curve is: a `spline` whose control points are the plan's nodes, a `refined
             spline` with more of them, the spline `through` the nodes, the plan's path `with rests`
-            at its bends, or one of `least fuel` beside the path.
+            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting`.
         nodes: (m + 1,) parameters of the curve that belong to the plan's nodes.
         length: L by its definition for paths [m]; shorter than the plan's but for `through`.
         objective: F by its definition for paths [length units]. It may be a little larger than the

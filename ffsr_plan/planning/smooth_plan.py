@@ -21,6 +21,7 @@ from ffsr_plan.smoothing.curve_proof import prove_curve
 from ffsr_plan.smoothing.proven_curve import ProvenCurve, proven_curve
 
 if TYPE_CHECKING:
+    from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.trajectory.flight_limits import FlightLimits
 
@@ -30,14 +31,14 @@ class SmoothPlan(Timing, SmoothPlanData):
     """A whole-body motion without corners, proven free of collisions, the base's reaction included.
 
     Velocity and acceleration are continuous in the curve's parameter. Start and goal are those of
-    the plan; a goal attitude that is demanded is reached again.
+    the plan; a goal attitude that is demanded is reached again. That of a meeting ends with it.
 
     Attributes:
         plan: the plan that was smoothed.
         curve: the curve. Its parameter runs from 0 to the number of its pieces.
         kind: what the curve is: a `spline` whose control points are the plan's nodes, a `refined
             spline` with more of them, the spline `through` the nodes, the plan's path `with rests`
-            at its bends, or one of `least fuel` beside the path.
+            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting`.
         nodes: (m + 1,) parameters of the curve that belong to the plan's nodes.
         length: L by its definition for paths [m]; shorter than the plan's but for `through`.
         objective: F by its definition for paths [length units]. It may be a little larger than the
@@ -48,10 +49,12 @@ class SmoothPlan(Timing, SmoothPlanData):
     """
 
     def _flown(
-        self, limits: FlightLimits, corners: str, duration: float | None
+        self, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting | None
     ) -> SmoothFlight | TimedPlan:
         from ffsr_plan.planning.flights import smooth_flight
 
+        if meeting is not None:
+            raise InvalidInput("meeting", meeting, "None along a smooth plan; see Plan.timed")
         if one_of("corners", corners, ("smooth", "rest")) == "rest":
             raise InvalidInput("corners", corners, "smooth: a smooth plan has none to rest at")
         return smooth_flight(self, limits, duration)
@@ -66,7 +69,7 @@ def smoothed(plan: PlanData) -> SmoothPlan:
     Raises:
         UnprovenCurve: nothing could be proven, not even the plan's path with rests.
     """
-    return _along(plan, proven_curve(plan.problem, plan.motion))
+    return smooth_plan(plan, proven_curve(plan.problem, plan.motion))
 
 
 def least_fuel(plan: PlanData, margin: float) -> SmoothPlan:
@@ -94,7 +97,7 @@ def least_fuel(plan: PlanData, margin: float) -> SmoothPlan:
     if found is not None:
         proof = prove_curve(problem, found.curve, problem.tolerance)
         curve = ProvenCurve("least fuel", proof, found.nodes, found.refused, found.queries)
-        refined = _along(plan, curve, margin)
+        refined = smooth_plan(plan, curve, margin)
         if not keeps or refined.change < plain.change:
             return refined
     if not keeps:
@@ -112,8 +115,14 @@ def _directions(plan: PlanData) -> Array:
     return np.vstack([way / length, plan.lattice.directions])
 
 
-def _along(plan: PlanData, found: ProvenCurve, margin: float = 0.0) -> SmoothPlan:
-    """The plan along a proven curve, which keeps a margin."""
+def smooth_plan(plan: PlanData, found: ProvenCurve, margin: float = 0.0) -> SmoothPlan:
+    """A plan along a curve that is proven.
+
+    Args:
+        plan: the plan.
+        found: the curve and its proof.
+        margin: clearance that it is known to keep [m].
+    """
     problem, curve = plan.problem, found.proof.curve
     lengths = curve_lengths(problem, curve)
     return SmoothPlan(

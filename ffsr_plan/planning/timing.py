@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ffsr_plan.trajectory.flight_limits import FlightLimits, PerJoint, read_limits
 
 if TYPE_CHECKING:
+    from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.problem.problem import Problem
 
@@ -36,6 +37,7 @@ class Timing:
         turn_velocity: float | None = None,
         turn_acceleration: float | None = None,
         velocity_jump: float = 0.0,
+        meeting: Meeting | None = None,
     ) -> SmoothFlight | TimedPlan:
         """The plan flown within limits, from rest at the start to rest at the goal.
 
@@ -58,10 +60,10 @@ class Timing:
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
             velocity_jump: with `corners="rest"`, the change of the base's velocity by one pulse of
                 the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
+            meeting: what a frame arrives with, and when, instead of a rest; see `Meeting`.
 
         Raises:
-            InvalidInput: a limit that cannot be or is missing, too short a duration, pulses that
-                cut corners by more than the clearance, or no motion at all.
+            InvalidInput: limits, a duration or a meeting that cannot be, or no motion at all.
             UnprovenCurve: see `smooth`.
         """
         limits = read_limits(
@@ -78,10 +80,10 @@ class Timing:
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
-        return self._flown(limits, corners, duration)
+        return self._flown(limits, corners, duration, meeting)
 
     @abstractmethod
     def _flown(
-        self, limits: FlightLimits, corners: str, duration: float | None
+        self, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting | None
     ) -> SmoothFlight | TimedPlan:
         """The flight within limits; see `timed`."""

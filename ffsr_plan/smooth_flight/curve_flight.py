@@ -19,6 +19,7 @@ from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.smooth_flight.curve_samples import Curve, dynamics_at
 from ffsr_plan.smooth_flight.pace import Pace
+from ffsr_plan.smooth_flight.pace_search import EndSpeeds
 from ffsr_plan.smooth_flight.timed_curve import SMALLEST_RATE, pace_within
 from ffsr_plan.trajectory.flight import Flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
@@ -139,23 +140,29 @@ class CurveFlight(Flight):
         return self._pace.on(self._pace.piece(instants), instants)
 
 
-def curve_flight(curve: Curve, limits: FlightLimits, duration: float | None = None) -> CurveFlight:
+def curve_flight(
+    curve: Curve,
+    limits: FlightLimits,
+    duration: float | None = None,
+    ends: EndSpeeds = EndSpeeds(),  # noqa: B008 - it is immutable
+) -> CurveFlight:
     """A curve flown from rest to rest; see `Plan.timed`.
 
     Args:
         curve: the curve.
         limits: the limits.
         duration: of the flight [s]; None for the shortest.
+        ends: s' at both ends [1/s], where the flight does not rest there.
 
     Raises:
         InvalidInput: see `pace_within`.
     """
-    pace = pace_within(curve, limits, duration)
+    pace, strength = pace_within(curve, limits, duration, ends), float(limits.acceleration[0])
+    straight = _straight_delta_v(curve, pace.duration, strength)
+    if ends != EndSpeeds():
+        straight = _delta_v_of_two_pulses(curve, pace)
     return CurveFlight(
-        curve=curve,
-        delta_v=_delta_v(curve, pace),
-        straight_delta_v=_straight_delta_v(curve, pace.duration, float(limits.acceleration[0])),
-        _pace=pace,
+        curve=curve, delta_v=_delta_v(curve, pace), straight_delta_v=straight, _pace=pace
     )
 
 
@@ -194,11 +201,32 @@ def _straight_delta_v(curve: Curve, duration: float, strength: float) -> float:
     """
     if curve.mode.floats:
         return 0.0
+    distance = float(np.linalg.norm(_change_of_place(curve)))
+    root = np.sqrt(max(duration**2 - 4.0 * distance / strength, 0.0))
+    return 4.0 * distance / (duration + float(root))
+
+
+def _delta_v_of_two_pulses(curve: Curve, pace: Pace) -> float:
+    """Least delta-v [m/s] of any flight with these ends of the centre of mass, thrust unlimited.
+
+    With the change of place d in the time t, from the velocity v to the velocity w: a pulse of
+    d / t - v at the start, a coast, and a pulse of w - d / t at the end.
+    """
+    if curve.mode.floats:
+        return 0.0
+    ends = dynamics_at(curve, np.array([0.0, curve.pieces]))[1].thrust[:, 0] / curve.robot.mass
+    last = pace.on(np.array([len(pace.begin) - 1]), pace.times[-1:])[1][0]
+    mean = _change_of_place(curve) / pace.duration
+    pulses = np.array([mean - ends[0] * pace.begin[0, 1], ends[1] * last - mean])
+    return float(np.sum(np.linalg.norm(pulses, axis=1)))
+
+
+def _change_of_place(curve: Curve) -> Array:
+    """(3,) from the centre of mass at the start of a curve to that at its end, world axes [m]."""
     ends = curve.at(np.array([0.0, curve.pieces]))
     base = ends.configurations
     centers = base[:, :3] + rotations.rotate(
         base[:, 3:7], centers_of_mass(curve.robot, ends.joints)
     )
-    distance = float(np.linalg.norm(centers[1] - centers[0]))
-    root = np.sqrt(max(duration**2 - 4.0 * distance / strength, 0.0))
-    return 4.0 * distance / (duration + float(root))
+    change: Array = centers[1] - centers[0]
+    return change

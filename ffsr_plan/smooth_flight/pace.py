@@ -51,6 +51,10 @@ class Pace(NamedTuple):
         """The law with all durations multiplied by a factor."""
         return Pace(self.times * factor, self.begin / factor ** np.arange(4))
 
+    def ending_at(self, time: float) -> Pace:
+        """The same law with its last time [s] to the last digit; it differs by rounding alone."""
+        return self._replace(times=np.append(self.times[:-1], time))
+
 
 def pace_of(s: Array, squares: Array) -> Pace:
     """The law with constant s'' between given parameters.

@@ -24,6 +24,7 @@ _LOOSE = 1e-3  # excess that is evened out by slowing down the whole flight
 _MOST_ROUNDS = 12
 _PEAK = 1.5 / 8.0  # of a second difference: by how much a peak exceeds samples, half in reserve
 _SAME = 1e-4  # relative tolerance of the duration before the law is slowed down to it
+_EXACT = 1e-14  # of the share of one law in a mixture of two
 
 
 class EndSpeeds(NamedTuple):
@@ -101,6 +102,44 @@ class Search(NamedTuple):
         while late(found) > 0.0:
             found += _SAME
         return self.ceiled(float(np.exp(found))).fastest()
+
+    def on_time(self, duration: float) -> Array:
+        """s'^2 of a law that takes a time exactly, whatever the speeds at its ends.
+
+        A law that is slowed down misses them. Instead, two laws are mixed that differ by little,
+        one too early and one too late: all limits are convex in s'^2 and s'', so the mixture keeps
+        them, and its speeds at the ends are those of both.
+
+        Args:
+            duration: the time [s], longer than the fastest law takes.
+
+        Returns:
+            (S + 1,) [1/s^2], as for `fastest`.
+
+        Raises:
+            InvalidInput: even the law whose speed never exceeds those at the ends takes less time.
+        """
+        s = self.samples.ends
+        lowest = max((s[-1] - s[0]) / duration, *self.ends)
+        early = self.fastest()
+        late = self.ceiled(lowest).fastest()
+        if duration_of(s, late) < duration:
+            allowed = f"at most {duration_of(s, late):.6g} s with these speeds at the ends"
+            raise InvalidInput("duration", duration, allowed)
+        low, high = np.log(lowest), np.log(np.sqrt(np.max(early)))
+        while high - low > _SAME:
+            squares = self.ceiled(float(np.exp((low + high) / 2.0))).fastest()
+            if duration_of(s, squares) > duration:
+                low, late = (low + high) / 2.0, squares
+            else:
+                high, early = (low + high) / 2.0, squares
+
+        def missed(share: float) -> float:
+            return duration_of(s, (1.0 - share) * early + share * late) - duration
+
+        share = float(brentq(missed, 0.0, 1.0, xtol=_EXACT, rtol=_EXACT))
+        mixed: Array = (1.0 - share) * early + share * late
+        return mixed
 
     def excess(self, squares: Array) -> Array:
         """(S,) largest share of a limit in use over each step, peaks between samples included."""

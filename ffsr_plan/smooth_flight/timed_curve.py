@@ -34,11 +34,12 @@ def pace_within(
         curve: the curve.
         limits: the limits; pulses are none of them.
         duration: of the whole flight [s]; None for the shortest.
-        ends: s' at both ends; only at rest, jerk can be limited and a duration given.
+        ends: s' at both ends; only at rest, jerk can be limited.
 
     Raises:
-        InvalidInput: a limit that is needed and not given, a duration shorter than the shortest, a
-            speed at an end that the limits do not allow, or a curve along which nothing moves.
+        InvalidInput: a limit that is needed and not given, a duration shorter than the shortest, or
+            longer than the speeds at the ends allow, a speed at an end that the limits do not
+            allow, or a curve along which nothing moves.
     """
     samples = curve_samples(curve)
     moves = _moving(samples)
@@ -48,14 +49,16 @@ def pace_within(
     wanted = demands(limits, samples.path, samples.dynamics, curve.robot.mass)
     search, at_rest = Search(samples, wanted, ends), ends == EndSpeeds()
     jerks = bool(np.any(np.isfinite(limits.jerk) & moves))
-    if not at_rest and (jerks or duration is not None):
-        raise InvalidInput("ends", ends, "zero with a limit on jerk or with a duration")
+    if not at_rest and jerks:
+        raise InvalidInput("ends", ends, "zero with a limit on jerk")
     fastest = pace_of(samples.ends, search.fastest())
     if jerks:
         return _with_jerk(JerkLimits(curve, limits), search, fastest, duration)
     if duration is None:
         return fastest
     _check_duration(duration, fastest.duration)
+    if not at_rest:
+        return pace_of(samples.ends, search.on_time(duration)).ending_at(duration)
     calm = pace_of(samples.ends, search.calmest(duration))
     return calm.slowed(max(duration / calm.duration, 1.0))
 

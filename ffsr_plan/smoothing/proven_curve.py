@@ -30,8 +30,8 @@ from ffsr_plan.smoothing.curve_objective import edge_lengths
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.goal_attitude import curve_to_attitude
 
-Kind = Literal["spline", "refined spline", "through", "with rests", "least fuel"]
-"""What a smooth curve is: see `proven_curve`, and for the last `fuel.curve_refinement`."""
+Kind = Literal["spline", "refined spline", "through", "with rests", "least fuel", "meeting"]
+"""What a smooth curve is: see `proven_curve`, `fuel.curve_refinement`, and `meetings`."""
 _BESIDE_REFUSED, _ROUNDS = 3, 7  # rounds of refinement beside what was refused, and in all
 _LEAST_SHARE = 0.1  # of the mean edge, by which nodes that are control points are apart
 _NO_BEND = 1e-9  # second difference of control points [m or rad] that counts as none

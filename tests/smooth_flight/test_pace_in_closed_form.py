@@ -9,7 +9,14 @@ from ffsr_plan.smooth_flight.curve_flight import curve_flight
 from ffsr_plan.smooth_flight.pace_search import EndSpeeds
 from ffsr_plan.smooth_flight.timed_curve import pace_within
 from tests.helpers.random_motions import bent_motion, straight_motion
-from tests.helpers.smooth_flights import BY_MODE, curve_of, flown, limits_of
+from tests.helpers.smooth_flights import (
+    BY_MODE,
+    curve_of,
+    flown,
+    instants,
+    limits_of,
+    shares_in_use,
+)
 
 LENGTH, PUSH = 3.0, 0.02
 
@@ -68,8 +75,9 @@ def test_end_speeds_that_cannot_be_are_refused(line, ends):
     curve = curve_of(line)
     with pytest.raises(InvalidInput, match=r"_speed.*at most"):
         pace_within(curve, limits_of(curve, thruster_acceleration=PUSH), ends=ends)
-    with pytest.raises(InvalidInput, match="zero with a limit on jerk or with a duration"):
-        pace_within(curve, limits_of(curve, thruster_acceleration=PUSH), 1e4, ends)
+    jerky = limits_of(curve, thruster_acceleration=PUSH, thruster_jerk=PUSH)
+    with pytest.raises(InvalidInput, match="zero with a limit on jerk"):
+        pace_within(curve, jerky, ends=ends)
 
 
 def test_end_speeds_on_a_bent_curve_keep_the_limits():
@@ -134,3 +142,27 @@ def test_a_free_floating_flight_needs_no_thrust():
 
 def test_flights_are_public():
     assert fp.SmoothFlight.__name__ == "SmoothFlight"
+
+
+def test_a_law_that_does_not_end_at_rest_arrives_on_time_and_keeps_the_limits():
+    motion = bent_motion(1, "free-flying", joints_bend=True)
+    curve = curve_of(motion)
+    given = limits_of(curve, **BY_MODE["free-flying"])
+    fastest = curve_flight(curve, given, ends=EndSpeeds(0.0, 0.01))
+    for factor in (1.001, 1.5, 4.0):
+        duration = factor * fastest.duration
+        speed = 0.5 * curve.pieces / duration
+        flight = curve_flight(curve, given, duration, EndSpeeds(0.0, speed))
+        assert flight.duration == duration
+        s, last, _ = flight.speeds([0.0, duration])
+        assert s == pytest.approx([0.0, curve.pieces], rel=1e-12)
+        assert last == pytest.approx([0.0, speed], rel=1e-9)
+        shares = shares_in_use(flight, given, instants(flight, 20))
+        assert max(shares.values()) <= 1.0 + 1e-9
+
+
+def test_a_law_too_fast_at_its_end_for_a_long_time_names_the_longest(line):
+    curve = curve_of(line)
+    limits = limits_of(curve, thruster_acceleration=PUSH)
+    with pytest.raises(InvalidInput, match=r"duration.*at most .* with these speeds at the ends"):
+        pace_within(curve, limits, 1e4, EndSpeeds(0.0, 0.2 / LENGTH))

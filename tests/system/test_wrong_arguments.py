@@ -58,6 +58,7 @@ def calls(plan, tmp_path_factory):
         fp.PostureAxis: {"joints": {"left_1": 1.0}, "half_count": 1, "spacing": 0.1},
         fp.PostureTarget: {"towards": "stowed", "levels": 2},
         fp.PostureAxis.towards: {"posture": "stowed", "levels": 2},
+        fp.Meeting: vars(fp.Meeting("left_3", 100.0)),
         fp.AntSystem: vars(fp.AntSystem()),
         fp.LeastFuel: vars(fp.LeastFuel(spacing=0.1)),
         fp.MaxMinAntSystem: vars(fp.MaxMinAntSystem()),
@@ -138,7 +139,7 @@ def calls(plan, tmp_path_factory):
         plan.timed: FIELDS | dict.fromkeys(
             ("joint_velocity", "base_velocity", "joint_torque", "joint_jerk", "thruster_jerk",
              "turn_velocity", "turn_acceleration", "duration")
-        ) | {"velocity_jump": 0.0, "corners": "smooth"},
+        ) | {"velocity_jump": 0.0, "corners": "smooth", "meeting": None},
         flight.at: {"times": [0.0]},
         flight.clock: {"rate": 1.0},
         flight.to_csv: {"path": folder / "f.csv", "rate": 1.0},
@@ -190,7 +191,8 @@ def test_the_interface_is_covered(calls):
     made_by_the_package = {
         "Branches", "Certificate", "Clearance", "Components", "Counts", "CurvePoints",
         "CurvedMotion", "Cycle", "EdgeProof",
-        "FlightReport", "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer", "Plan",
+        "FlightReport", "FuelFigures", "History", "LatticeOptimum", "Mode", "Motion", "PageServer",
+        "Plan",
         "Replacement", "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",

@@ -1,0 +1,97 @@
+"""`TimedApproach`: an approach flown on time, and the earliest time at which one can be flown."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.curves.smooth_curve import SmoothCurve
+from ffsr_plan.meetings.approach import Approach, Found
+from ffsr_plan.meetings.arrival import Arrival
+from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
+from ffsr_plan.smooth_flight.pace_search import EndSpeeds
+from ffsr_plan.trajectory.flight_limits import FlightLimits
+
+_EARLIEST = 0.5  # share of the curve for an approach that brakes all along its second half
+_FEWEST, _IN_WINDOW = 32, 10  # pieces of a curve, and of its approach
+_SPEED = 0.95  # at the end, relative to the mean: the pace can rise above it until it is on time
+_LONGER, _MOST = 1.5, 40  # steps of a search, and their number
+_GOOD = 1.01  # relative, of the earliest time
+
+
+class TimedApproach(NamedTuple):
+    """A curve with its flight, or what prevents the flight.
+
+    Attributes:
+        found: the curve; None if none ends as demanded.
+        flight: None if the limits forbid to be on time.
+    """
+
+    found: Found | None
+    flight: CurveFlight | None
+
+
+def _pieces(motion_edges: int, window: float, factor: int) -> int:
+    """Number of pieces of a curve: a multiple of the motion's edges, with enough for the window."""
+    fewest = max(_FEWEST, int(np.ceil(_IN_WINDOW / window)))
+    return factor * motion_edges * -(-fewest // motion_edges)
+
+
+def timed_approach(
+    arrival: Arrival, limits: FlightLimits, at: float, window: float, factor: int = 1
+) -> TimedApproach:
+    """An approach flown within limits that arrives at a time.
+
+    Args:
+        arrival: what is demanded of the end.
+        limits: the limits.
+        at: the time [s].
+        window: share of the curve that the approach takes.
+        factor: by which it has more pieces than it needs.
+
+    Raises:
+        InvalidInput: a limit that is needed and not given, or a twist that cannot be.
+    """
+    pieces = _pieces(arrival.motion.edges, window, factor)
+    speed = _SPEED * pieces / at
+    found = Approach(arrival, pieces, window, speed).found()
+    if found is None:
+        return TimedApproach(None, None)
+    arrival.check(found.end, limits)
+    try:
+        flight = curve_flight(SmoothCurve(found.curve), limits, at, EndSpeeds(0.0, speed))
+    except InvalidInput as error:
+        if error.what not in ("duration", "end_speed"):
+            raise
+        return TimedApproach(found, None)
+    return TimedApproach(found, flight)
+
+
+def earliest(arrival: Arrival, limits: FlightLimits, late: float) -> float | None:
+    """Earliest time of arrival [s] to 1 %, obstacles left aside; None if there is none at all.
+
+    Args:
+        arrival: what is demanded of the end.
+        limits: the limits.
+        late: a time that is too early [s].
+    """
+
+    def possible(time: float) -> bool:
+        return timed_approach(arrival, limits, time, _EARLIEST).flight is not None
+
+    early, time = late, late
+    for _ in range(_MOST):
+        early, time = time, time * _LONGER
+        if possible(time):
+            break
+    else:
+        return None
+    while time > _GOOD * early:
+        middle = float(np.sqrt(early * time))
+        if possible(middle):
+            time = middle
+        else:
+            early = middle
+    return time
