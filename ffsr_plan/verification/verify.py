@@ -24,6 +24,7 @@ from ffsr_plan.core.checks import whole_number
 from ffsr_plan.core.contacts import approach
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.momentum_residual import momentum_residual, wheel_momentum_error
+from ffsr_plan.verification.motion_samples import Sampler
 from ffsr_plan.verification.recomputed_objective import AGREEMENT, Recomputed, recompute
 from ffsr_plan.verification.recomputed_path import FreePath, LatticePath, path_of
 from ffsr_plan.verification.sweep import CONFIRMED, OnProgress, Swept, sweep
@@ -108,7 +109,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         raise InvalidInput("on_progress", on_progress, "a function, or None")
     problem = plan.problem
     bodies = Bodies(problem.robot.urdf, problem.robot.srdf, problem.robot.replacements)
-    swept = sweep(plan, bodies, samples, on_progress)
+    swept = sweep(Sampler(plan, bodies), bodies, samples, on_progress)
     held = problem.mode.has_wheels
     residual = None if held else momentum_residual(plan, bodies)
     wheel_error = wheel_momentum_error(plan, bodies) if held else None
