@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
@@ -13,6 +14,9 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
+
+if TYPE_CHECKING:
+    from ffsr_plan.verification.flights.verify_flight import FlightReport
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -43,6 +47,13 @@ class TimedPlan(FlightPictures, TimedMotion):
     problem: Problem
     limits: FlightLimits
 
+    def verify(self) -> FlightReport:
+        """Check the flight by other code than the planner's; see `FlightReport`."""
+        from ffsr_plan.verification.flights import verify_flight as check
+
+        cut, obstacles = self.corner_cut, len(self.problem.scene)
+        return check.verify_flight(self, check.clearance_to_confirm(cut, obstacles))
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SmoothFlight(FlightPictures, CurveFlight):
@@ -67,6 +78,12 @@ class SmoothFlight(FlightPictures, CurveFlight):
     def problem(self) -> Problem:  # type: ignore[override]  # handed on, not kept twice
         """Robot, obstacles, start and goal."""
         return self.smooth_plan.plan.problem
+
+    def verify(self) -> FlightReport:
+        """Check the flight by other code than the planner's; see `FlightReport`."""
+        from ffsr_plan.verification.flights.verify_flight import verify_flight
+
+        return verify_flight(self, self.smooth_plan.certificate.least_clearance)
 
 
 def flown(

@@ -1,0 +1,1 @@
+"""Independent verification of flights: integrals, forces, limits and distances over time."""
