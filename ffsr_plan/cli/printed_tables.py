@@ -98,12 +98,13 @@ def flight_report_rows(report: FlightReport) -> Iterator[tuple[str, str]]:
     yield "verified", "yes" if report.ok else "NO, see below"
     base = f"{report.position_error:.1e} m and {report.attitude_error:.1e} rad"
     yield "  base", f"within {base} of its integration"
-    worst = max(report.thrust_error, report.torque_error)
+    worst = max(report.thrust_error, report.torque_error, report.wheel_error)
     yield "  thrust and torques", f"within {worst:.1e} of their peaks by inverse dynamics"
     for name, share in report.limits.items():
         yield f"  {name}", f"{share:.1%} of the limit"
     if np.isfinite(report.least_clearance):
-        yield "  least clearance", f"{report.least_clearance:.6f} m at {report.samples} samples"
+        least, bound = report.least_clearance, report.clearance_bound
+        yield "  least clearance", f"{least:.6f} m measured, at least {bound:.6f} m between samples"
     yield "  not checked", "\n".join(report.not_checked)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.planning.flight_pictures import FlightPictures
@@ -16,34 +16,11 @@ from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
 
 if TYPE_CHECKING:
     from ffsr_plan.meetings.meeting import Meeting
-    from ffsr_plan.verification.flights.flown_flight import FlownFlight
     from ffsr_plan.verification.flights.verify_flight import FlightReport
 
 
-class FlownPlan(FlightPictures):
-    """What flights of plans have in common: pictures and verification."""
-
-    def verify(self, samples: int | None = None) -> FlightReport:
-        """Check the flight by code of its own: motion, forces, limits and distances.
-
-        The motion is integrated again from rates, thrust and the conservation of momentum, forces
-        are those of Pinocchio's inverse dynamics, limits are looked at 100 times a step of the law,
-        and distances are measured at dense samples by the code that also verifies plans.
-
-        Args:
-            samples: least number of equal time steps at which distances are measured, 2 000 by
-                default. Where a contact could fit between two of them, there are more.
-
-        Raises:
-            InvalidInput: `samples` is not a positive whole number, or too large.
-        """
-        from ffsr_plan.verification.flights.verify_flight import SAMPLES, verify_flight
-
-        return verify_flight(cast("FlownFlight", self), SAMPLES if samples is None else samples)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class TimedPlan(FlownPlan, TimedMotion):
+class TimedPlan(FlightPictures, TimedMotion):
     """A plan flown on its path as fast as limits allow; made by `Plan.timed(corners="rest")`.
 
     It rests at corners of the path, or passes them with pulses of the thrusters, at the highest
@@ -70,9 +47,21 @@ class TimedPlan(FlownPlan, TimedMotion):
     problem: Problem
     limits: FlightLimits
 
+    @property
+    def meeting(self) -> None:
+        """None: it ends at rest."""
+        return None
+
+    def verify(self) -> FlightReport:
+        """Check the flight by other code than the planner's; see `FlightReport`."""
+        from ffsr_plan.verification.flights import verify_flight as check
+
+        cut, obstacles = self.corner_cut, len(self.problem.scene)
+        return check.verify_flight(self, check.clearance_to_confirm(cut, obstacles))
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SmoothFlight(FlownPlan, CurveFlight):
+class SmoothFlight(FlightPictures, CurveFlight):
     """A plan flown along its smooth curve, at rest at its ends only; made by `Plan.timed`.
 
     With a meeting it is not at rest at its end.
@@ -100,6 +89,12 @@ class SmoothFlight(FlownPlan, CurveFlight):
     def problem(self) -> Problem:  # type: ignore[override]  # handed on, not kept twice
         """Robot, obstacles, start and goal."""
         return self.smooth_plan.plan.problem
+
+    def verify(self) -> FlightReport:
+        """Check the flight by other code than the planner's; see `FlightReport`."""
+        from ffsr_plan.verification.flights.verify_flight import verify_flight
+
+        return verify_flight(self, self.smooth_plan.certificate.least_clearance)
 
 
 def timed_plan(plan: PlanData, limits: FlightLimits) -> TimedPlan:

@@ -80,7 +80,7 @@ def _momentum(plan: PlanData, bodies: Bodies, stations: Array) -> tuple[Array, A
     steps = np.arange(-4, 5) * spacing
     times = stations[:, None] + steps
     q = plan.at(times.ravel() / divisions)
-    turns, poses = base_turns(q), base_frame_poses(plan.problem.robot, bodies, q)
+    turns, poses = base_turns(q), base_frame_poses(plan, bodies, q)
     masses, points, velocities, spins, scale = [], [], [], [], np.zeros(len(stations))
     for link, inertial in bodies.inertials.items():
         frame = poses[link] @ (np.eye(4) if inertial.origin is None else inertial.origin)

@@ -6,17 +6,23 @@ does not grow with the distance from the world's origin.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.verification.momentum_map import MomentumMap, momentum_map
+from ffsr_plan.verification.rate_bounds import RateBounds
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 
 if TYPE_CHECKING:
     from ffsr_plan.plans.plan_data import PlanData
-    from ffsr_plan.robots.robot import SpaceRobot
+    from ffsr_plan.problem.problem import Problem
+
+
+class _OfProblem(Protocol):
+    @property
+    def problem(self) -> Problem: ...
 
 
 class Samples(NamedTuple):
@@ -30,6 +36,7 @@ class Samples(NamedTuple):
         momentum: what base and joints contribute to the momentum.
         centers_of_mass: (N, 3) of the robot from the start's base origin, world axes [m].
         deviation: (N,) distance of joints and base from straight lines between corners [m, rad].
+        rates: (N, nd) of the joints [rad or m per edge].
     """
 
     base_turns: Array
@@ -39,16 +46,41 @@ class Samples(NamedTuple):
     momentum: MomentumMap
     centers_of_mass: Array
     deviation: Array
+    rates: Array
 
     def with_turns_of(self, other: Samples) -> Samples:
         """The same with the base rotations and momenta of more samples behind its own."""
         momentum = self.momentum.followed_by(other.momentum)
         turns = np.concatenate([self.base_turns, other.base_turns])
-        return self._replace(base_turns=turns, momentum=momentum)
+        rates = np.concatenate([self.rates, other.rates])
+        return self._replace(base_turns=turns, momentum=momentum, rates=rates)
+
+
+class Course(Protocol):
+    """A motion in m edges, and bounds on its speeds; what `sweep` measures along.
+
+    Attributes:
+        problem: robot, obstacles, mode and start.
+        edges: m, their number.
+        clearance: the clearance to confirm [m].
+        rates: bounds on speeds by joints.
+        base_speeds: (m,) bound on the speed of a base that thrusters move [m per edge].
+        held_turns: (m,) bound on the angular velocity by wheels [rad per edge]; None without.
+    """
+
+    problem: Problem
+    edges: int
+    clearance: float
+    rates: RateBounds
+    base_speeds: Array
+    held_turns: Array | None
+
+    def at(self, edge: IntArray, time: Array) -> Samples:
+        """Configurations at times (N,) from 0 to 1 on edges (N,)."""
 
 
 class Sampler:
-    """Samples a plan's motion.
+    """Samples a plan's motion; a `Course`.
 
     Attributes:
         positions: (m + 1, 3) base origins at the corners, from the start's [m].
@@ -69,12 +101,20 @@ class Sampler:
         self.positions: Array = self._corners[:, :3] - self._origin
         self.joint_values: Array = plan.motion.joint_values
         self._wraps = np.isinf(plan.problem.robot.upper)
+        self.problem, mode = plan.problem, plan.problem.mode
+        self.clearance = plan.certificate.least_clearance
+        self._steps = np.diff(self.joint_values, axis=0)
+        self.rates = RateBounds(bodies, plan.problem.robot.joint_names, self.joint_values)
+        moved = np.linalg.norm(np.diff(self.positions, axis=0), axis=1)
+        self.base_speeds = np.zeros(self.edges) if mode.floats else moved
+        self.held_turns = None if mode.attitude_reacts else _held_turns(plan)
 
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on edges (N,)."""
         q = self._plan.at(np.minimum((edge + time) / self.edges, 1.0))
-        samples = samples_of(self._plan.problem.robot, self._bodies, self._origin, q)
-        return samples._replace(deviation=self._deviation(edge, time, q))
+        return samples_of(
+            self._plan, self._bodies, q, self._deviation(edge, time, q), self._steps[edge]
+        )
 
     def _deviation(self, edge: IntArray, time: Array, q: Array) -> Array:
         """(N,) largest difference from straight lines between the corners."""
@@ -88,20 +128,24 @@ class Sampler:
         return np.max(np.abs(apart), axis=1, initial=0.0)
 
 
-def samples_of(robot: SpaceRobot, bodies: Bodies, origin: Array, q: Array) -> Samples:
-    """Configurations as samples, without any deviation.
+def samples_of(
+    motion: _OfProblem, bodies: Bodies, q: Array, deviation: Array, rates: Array
+) -> Samples:
+    """Samples of configurations.
 
     Args:
-        robot: the robot, for the names of the joints.
+        motion: a plan or a flight.
         bodies: the robot, from its URDF.
-        origin: (3,) point from which base positions are counted [m].
         q: (N, nq) configurations.
+        deviation: (N,) see `Samples`.
+        rates: (N, nd) see `Samples`.
     """
-    poses = base_frame_poses(robot, bodies, q)
+    poses = base_frame_poses(motion, bodies, q)
     placed = [poses[shape.link] @ shape.placement for shape in bodies.shapes]
     frames = np.stack(placed, axis=1) if placed else np.zeros((len(q), 0, 4, 4))
-    momentum = momentum_map(bodies, robot.joint_names, poses)
-    turns, places = base_turns(q), q[:, :3] - origin
+    momentum = momentum_map(bodies, motion.problem.robot.joint_names, poses)
+    turns = base_turns(q)
+    places = q[:, :3] - motion.problem.start[:3]
     return Samples(
         base_turns=turns,
         base_places=places,
@@ -109,7 +153,8 @@ def samples_of(robot: SpaceRobot, bodies: Bodies, origin: Array, q: Array) -> Sa
         places=np.ascontiguousarray(frames[..., :3, 3]),
         momentum=momentum,
         centers_of_mass=places + np.einsum("nij,nj->ni", turns, momentum.centers),
-        deviation=np.zeros(len(q)),
+        deviation=deviation,
+        rates=rates,
     )
 
 
@@ -118,17 +163,33 @@ def base_turns(q: Array) -> Array:
     return pose(np.zeros((len(q), 3)), q[:, 3:7])[:, :3, :3]
 
 
-def base_frame_poses(robot: SpaceRobot, bodies: Bodies, q: Array) -> dict[str, Array]:
+def base_frame_poses(motion: _OfProblem, bodies: Bodies, q: Array) -> dict[str, Array]:
     """Poses of all links relative to the base.
 
     Args:
-        robot: the robot, for the names of the joints.
+        motion: a plan or a flight, for the names of the joints.
         bodies: the robot, from its URDF.
         q: (N, nq) configurations.
 
     Returns:
         (N, 4, 4) for each link by name, link axes to base axes.
     """
+    robot = motion.problem.robot
     values = robot.joint_values(q)
     joints = {name: values[:, k] for k, name in enumerate(robot.joint_names)}
     return bodies.link_poses(np.broadcast_to(np.eye(4), (len(q), 4, 4)), joints)
+
+
+def _held_turns(plan: PlanData) -> Array:
+    """(m,) angle [rad] that wheels turn the base by on each edge; the same on all of a lattice."""
+    if plan.problem.lattice is not None:
+        whole = _angles(plan.problem.start[3:7], plan.problem.goal[3:7])
+        return np.full(plan.edges, whole / plan.edges)
+    attitudes = plan.configurations[:, 3:7]
+    return _angles(attitudes[:-1], attitudes[1:])
+
+
+def _angles(a: Array, b: Array) -> Array:
+    """Angles between attitudes (..., 4) [rad]."""
+    ends = np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)
+    return np.asarray(4.0 * np.arctan2(np.minimum(*ends), np.maximum(*ends)))

@@ -1,7 +1,8 @@
 """Bounds on how fast points of the robot can move, edge by edge, whatever its configuration.
 
-Rates are per edge. On an edge the joints move at known, constant rates, and a point of a link is
-never farther from a joint's origin than the offsets along the chain add up to. The angular velocity
+Rates are per edge. On an edge of a plan the joints move at known, constant rates, on a piece of a
+flight at rates with known bounds; a point of a link is never farther from a joint's origin than the
+offsets along the chain add up to. The angular velocity
 of a reacting base is w = -I^-1 h, with the inertia I about the centre of mass and the momentum h of
 the joints. With I w = -h at two times less than d apart, and |dI| <= i d, |dh| <= g d,
 
@@ -38,22 +39,32 @@ class RateBounds:
     """Bounds on the speeds of shapes, and on the angular velocity of the base.
 
     Attributes:
-        rates: (m, nd) changes of the joint values over each edge [rad or m].
         shapes: (m, s) speed of any point of each shape, relative to the base [m].
         reach: (s,) largest distance of any point of a shape from the base origin [m].
     """
 
-    def __init__(self, bodies: Bodies, names: tuple[str, ...], joint_values: Array) -> None:
+    def __init__(
+        self,
+        bodies: Bodies,
+        names: tuple[str, ...],
+        joint_values: Array,
+        sizes: Array | None = None,
+        bends: Array | None = None,
+    ) -> None:
         """Bounds for joint values (m + 1, nd) at the corners.
 
         Args:
             bodies: the robot, from its URDF.
             names: (nd) names of the joints.
             joint_values: (m + 1, nd) at the corners [rad or m].
+            sizes: (m, nd) bounds on the joints' rates; None for straight lines between the corners.
+            bends: (m, nd) bounds on the rates of change of these; None for zero.
         """
-        self.rates: Array = np.diff(joint_values, axis=0)
-        self._sizes = np.abs(self.rates)
-        self._tree = _Tree(bodies, names, np.max(np.abs(joint_values), axis=0))
+        steps = np.abs(np.diff(joint_values, axis=0))
+        self._sizes = steps if sizes is None else sizes
+        self._bends = np.zeros(steps.shape) if bends is None else bends
+        beyond = 0.0 if sizes is None else np.max(sizes, axis=0)
+        self._tree = _Tree(bodies, names, np.max(np.abs(joint_values), axis=0) + beyond)
         levers = self._tree.levers(
             [
                 (shape.link, (shape.placement @ np.append(np.mean(shape.points, axis=0), 1.0))[:3])
@@ -80,18 +91,19 @@ class RateBounds:
         """`shapes` and `reach` where the centre of mass, not the base origin, stays at rest."""
         return self.shapes + self._center_speed[:, None], self.reach + self._center_reach
 
-    def turn(self, momentum: MomentumMap, edge: IntArray, apart: Array) -> Array:
+    def turn(self, momentum: MomentumMap, rates: Array, edge: IntArray, apart: Array) -> Array:
         """Bound on the angular velocity of a reacting base near some samples.
 
         Args:
             momentum: at the samples (N).
+            rates: (N, nd) of the joints there [rad or m per edge].
             edge: (N,) the edges that they are on.
             apart: (N,) how far from them in time the bound is to hold [edges].
 
         Returns:
             (N,) [rad per edge].
         """
-        omega = np.einsum("nij,nj->ni", momentum.reactions, self.rates[edge])
+        omega = np.einsum("nij,nj->ni", momentum.reactions, rates)
         size, inertia = np.linalg.norm(omega, axis=1), momentum.least_inertia
         left = 1.0 - self._inertia_rate[edge] * apart / inertia
         near = (size + self._momentum_rate[edge] * apart / inertia) / np.where(left > 0, left, 1.0)
@@ -120,6 +132,8 @@ class RateBounds:
         self._momentum_rate: Array = (
             turns**2 @ (most - least) + turn_changes @ most + speed_changes @ (mass * distance)
         )
+        more, _ = self._tree.turns([link for link, _ in inertials], self._bends)
+        self._momentum_rate += more @ most + (self._bends @ levers.arms.T) @ (mass * distance)
         self._inertia_rate: Array = turns @ (most - least) + 2.0 * speeds @ (mass * distance)
 
 

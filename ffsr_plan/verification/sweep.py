@@ -9,18 +9,14 @@ Where it does not, a sample is taken in the middle.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
-from ffsr_plan.verification.motion_samples import Sampler, Samples
-from ffsr_plan.verification.rate_bounds import RateBounds
+from ffsr_plan.verification.motion_samples import Course, Samples
 from ffsr_plan.verification.separation import SampledDistances
 from ffsr_plan.verification.urdf_reading import Bodies
-
-if TYPE_CHECKING:
-    from ffsr_plan.plans.plan_data import PlanData
 
 ROUNDING = 1e-9
 """Length [m] added to every travel, for rounding errors of distances."""
@@ -112,18 +108,18 @@ class _Items(NamedTuple):
 
 
 def sweep(
-    plan: PlanData, bodies: Bodies, samples: int, on_progress: OnProgress | None = None
+    course: Course, bodies: Bodies, samples: int, on_progress: OnProgress | None = None
 ) -> Swept:
-    """Measure distances all along a plan's motion.
+    """Measure distances all along a motion.
 
     Args:
-        plan: the plan.
+        course: the motion.
         bodies: the robot, from its URDF.
         samples: least number of equal time steps on each edge.
         on_progress: called with the share that is done, from 0 to 1.
     """
-    run = _Sweep(plan, bodies, samples)
-    total = run.sampler.edges * samples
+    run = _Sweep(course, bodies, samples)
+    total = run.course.edges * samples
     size = max(1, min(_SAMPLES_AT_ONCE, _VALUES_AT_ONCE // max(1, run.distances.parts)))
     for begin in range(0, total, size):
         run.block(begin, min(begin + size, total))
@@ -137,29 +133,27 @@ def sweep(
 class _Sweep:
     """A sweep under way."""
 
-    def __init__(self, plan: PlanData, bodies: Bodies, samples: int) -> None:
+    def __init__(self, course: Course, bodies: Bodies, samples: int) -> None:
         self._per_edge = samples
-        self.sampler = Sampler(plan, bodies)
-        self.distances = SampledDistances(bodies, plan.problem.obstacles, plan.problem.start[:3])
-        self.found = Swept(self.sampler.edges)
-        mode, edges = plan.problem.mode, self.sampler.edges
-        moved = np.linalg.norm(np.diff(self.sampler.positions, axis=0), axis=1)
-        base = np.zeros(edges) if mode.floats else moved
-        names = plan.problem.robot.joint_names
-        self._rates = rates = RateBounds(bodies, names, self.sampler.joint_values)
-        speeds, reach = rates.afloat() if mode.floats else (rates.shapes, rates.reach)
+        self.course, problem = course, course.problem
+        self.distances = SampledDistances(bodies, problem.obstacles, problem.start[:3])
+        self.found = Swept(course.edges)
+        self._rates = rates = course.rates
+        floats = problem.mode.floats
+        speeds, reach = rates.afloat() if floats else (rates.shapes, rates.reach)
         shapes, pairs = self.distances.shapes, self.distances.pairs
-        self._speeds = np.hstack([speeds[:, :shapes] + base[:, None], rates.of_pairs(pairs)])
+        self._speeds = np.hstack(
+            [speeds[:, :shapes] + course.base_speeds[:, None], rates.of_pairs(pairs)]
+        )
         self._reach = np.append(reach[:shapes], np.zeros(len(pairs)))
-        self._held_turns = None if mode.attitude_reacts else _held_turns(plan)
-        self._claim = plan.certificate.least_clearance
-        self._start = self.sampler.at(np.zeros(1, dtype=np.int64), np.zeros(1)).centers_of_mass[0]
+        self._claim = course.clearance
+        self._start = course.at(np.zeros(1, dtype=np.int64), np.zeros(1)).centers_of_mass[0]
         self._halvings = 0
 
     def block(self, begin: int, end: int) -> None:
         """The even intervals from `begin` to `end`, and what they are halved into."""
         points, parts = np.arange(begin, end + 1), np.arange(self.distances.parts)
-        edge = np.minimum(points // self._per_edge, self.sampler.edges - 1)
+        edge = np.minimum(points // self._per_edge, self.course.edges - 1)
         time = (points - edge * self._per_edge) / self._per_edge
         samples = self._sampled(edge, time)
         self.found.samples -= int(begin > 0)  # the first is the last of the block before
@@ -187,7 +181,7 @@ class _Sweep:
 
     def _sampled(self, edge: IntArray, time: Array) -> Samples:
         """Samples, and what they say of the motion itself."""
-        samples, found = self.sampler.at(edge, time), self.found
+        samples, found = self.course.at(edge, time), self.found
         found.samples += len(edge)
         drift = float(np.linalg.norm(samples.centers_of_mass - self._start, axis=1).max())
         deviation = float(samples.deviation.max())
@@ -200,11 +194,13 @@ class _Sweep:
     ) -> _Intervals:
         """Intervals, with a bound on the angular velocity of the base that both ends allow."""
         apart = end - begin
-        if self._held_turns is not None:
-            turn = self._held_turns[edge]
+        if self.course.held_turns is not None:
+            turn = self.course.held_turns[edge]
         else:
-            ends = [self._samples.momentum.at(sample) for sample in (first, last)]
-            turn = np.maximum(*(self._rates.turn(each, edge, 0.5 * apart) for each in ends))
+            momentum, rates, half = self._samples.momentum, self._samples.rates, 0.5 * apart
+            turn = np.maximum(
+                *(self._rates.turn(momentum.at(k), rates[k], edge, half) for k in (first, last))
+            )
         turns = self._samples.base_turns
         sine = np.linalg.norm(turns[first] - turns[last], axis=(1, 2)) / np.sqrt(8.0)
         turned = 2.0 * np.arcsin(np.minimum(sine, 1.0))
@@ -296,18 +292,3 @@ class _Sweep:
             np.append(of_item, of_item + len(chosen)), np.tile(items.part, 2),
             np.append(items.at_first, values), np.append(values, items.at_last),
         )  # fmt: skip
-
-
-def _held_turns(plan: PlanData) -> Array:
-    """(m,) angle [rad] that wheels turn the base by on each edge; the same on all of a lattice."""
-    if plan.problem.lattice is not None:
-        whole = _angles(plan.problem.start[3:7], plan.problem.goal[3:7])
-        return np.full(plan.edges, whole / plan.edges)
-    attitudes = plan.configurations[:, 3:7]
-    return _angles(attitudes[:-1], attitudes[1:])
-
-
-def _angles(a: Array, b: Array) -> Array:
-    """Angles between attitudes (..., 4) [rad]."""
-    ends = np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)
-    return np.asarray(4.0 * np.arctan2(np.minimum(*ends), np.maximum(*ends)))

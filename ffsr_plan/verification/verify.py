@@ -20,10 +20,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import whole_number
 from ffsr_plan.core.contacts import approach
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.momentum_residual import momentum_residual, wheel_momentum_error
+from ffsr_plan.verification.motion_samples import Sampler
 from ffsr_plan.verification.recomputed_objective import AGREEMENT, Recomputed, recompute
 from ffsr_plan.verification.recomputed_path import FreePath, LatticePath, path_of
 from ffsr_plan.verification.sweep import CONFIRMED, OnProgress, Swept, sweep
@@ -31,6 +33,8 @@ from ffsr_plan.verification.urdf_reading import Bodies
 
 if TYPE_CHECKING:
     from ffsr_plan.plans.plan_data import PlanData
+    from ffsr_plan.problem.problem import Problem
+    from ffsr_plan.robots.robot import SpaceRobot
 
 MOMENTUM_LIMIT = 1e-9
 """Allowed relative error of angular momentum."""
@@ -108,7 +112,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         raise InvalidInput("on_progress", on_progress, "a function, or None")
     problem = plan.problem
     bodies = Bodies(problem.robot.urdf, problem.robot.srdf, problem.robot.replacements)
-    swept = sweep(plan, bodies, samples, on_progress)
+    swept = sweep(Sampler(plan, bodies), bodies, samples, on_progress)
     held = problem.mode.has_wheels
     residual = None if held else momentum_residual(plan, bodies)
     wheel_error = wheel_momentum_error(plan, bodies) if held else None
@@ -118,8 +122,8 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         contradictions = path.problems(bodies, swept.nodes) if swept.finite else []
     problems = (
         *_bad_input(plan, bodies),
-        *_collisions(plan, swept),
-        *_other_motion(swept),
+        *collisions(plan.certificate.least_clearance, swept),
+        *other_motion(swept),
         *_broken_momentum(residual, wheel_error, drift),
         *_ends_and_limits(plan),
         *_other_costs(plan, costs),
@@ -151,7 +155,6 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
 
 def _not_checked(plan: PlanData, path: LatticePath | FreePath, bodies: Bodies) -> Iterator[str]:
     """What the verification takes as the plan has it."""
-    robot = plan.problem.robot
     if plan.optimum_is_exact:
         yield "that the optimum is the least F on the lattice (`LatticeOptimum` computes it anew)"
     else:
@@ -164,6 +167,16 @@ def _not_checked(plan: PlanData, path: LatticePath | FreePath, bodies: Bodies) -
         yield "F on the lattice, from which the joints were moved to reach the goal's attitude"
     elif path.moved:
         yield "that the path on the lattice is free between its nodes: the refined one was checked"
+    yield from shapes_not_checked(plan.problem.robot, bodies)
+
+
+def shapes_not_checked(robot: SpaceRobot, bodies: Bodies) -> Iterator[str]:
+    """What the verification takes as it is of a robot's shapes.
+
+    Args:
+        robot: the robot.
+        bodies: the same, from its URDF.
+    """
     if robot.meshes:
         yield "that the hulls of meshes are those of their files, which the plan does not need"
     if robot.disabled_pairs:
@@ -182,33 +195,40 @@ def _bad_input(plan: PlanData, bodies: Bodies) -> list[str]:
     return problems
 
 
-def _collisions(plan: PlanData, swept: Swept) -> list[str]:
-    problems = []
-    proven, least = plan.certificate.least_clearance, np.inf
+def collisions(proven: float, swept: Swept, motion: str = "plan", part: str = "edge") -> list[str]:
+    """What is wrong with distances along a motion.
+
+    Args:
+        proven: clearance that the motion claims [m].
+        swept: the distances found.
+        motion: what it is, in words.
+        part: what one of its edges is, in words.
+    """
+    problems, least = [], np.inf
     if swept.clearance is not None:
         least, edge, names = swept.clearance
         if least <= 0.0:
-            problems.append(f"link '{names[0]}' {approach(least)} an obstacle on edge {edge}")
+            problems.append(f"link '{names[0]}' {approach(least)} an obstacle on {part} {edge}")
     if swept.separation is not None and swept.separation.value <= 0.0:
         _, edge, names = swept.separation
-        problems.append(f"two links touch on edge {edge}: '{names[0]}' and '{names[1]}'")
+        problems.append(f"two links touch on {part} {edge}: '{names[0]}' and '{names[1]}'")
     if proven > least + AGREEMENT:
         measured = f"{least:.6g} m" if least > 0.0 else "none"
-        stated = f"the plan's proven clearance is {proven:.6g} m"
+        stated = f"the {motion}'s proven clearance is {proven:.6g} m"
         problems.append(f"{stated}, but {measured} was measured")
     elif np.isinf(proven) != np.isinf(least) or proven > swept.clearance_bound + CONFIRMED:
-        problems.append(f"the plan's proven clearance of {proven:.6g} m is not confirmed")
+        problems.append(f"the {motion}'s proven clearance of {proven:.6g} m is not confirmed")
     for place, other in zip(swept.hidden, ("an obstacle", "another link"), strict=True):
         if place is not None:
             other = f"link '{place.names[1]}'" if len(place.names) > 1 else other
             problems.append(
-                f"link '{place.names[0]}' may touch {other} on edge {place.edge} between two "
+                f"link '{place.names[0]}' may touch {other} on {part} {place.edge} between two "
                 f"samples {place.value:.2g} m apart"
             )
     return problems
 
 
-def _other_motion(swept: Swept) -> list[str]:
+def other_motion(swept: Swept) -> list[str]:
     """Where the motion is not what bounds on its travel rest on."""
     problems = []
     if swept.deviation > AGREEMENT:
@@ -246,10 +266,14 @@ def _other_costs(plan: PlanData, costs: Recomputed) -> list[str]:
     return problems
 
 
-def _ends_and_limits(plan: PlanData) -> list[str]:
-    problem, robot = plan.problem, plan.problem.robot
-    first, last = plan.configurations[0], plan.configurations[-1]
-    values = robot.joint_values(plan.configurations)
+def other_ends(problem: Problem, first: Array, last: Array) -> list[str]:
+    """Where a motion does not lead from the start to the goal.
+
+    Args:
+        problem: gives start and goal.
+        first: (nq,) configuration at its begin.
+        last: (nq,) at its end.
+    """
     problems = []
     if np.abs(first - problem.start).max() > AGREEMENT:
         problems.append("the motion does not begin at the start")
@@ -266,6 +290,13 @@ def _ends_and_limits(plan: PlanData) -> list[str]:
         chord = min(np.linalg.norm(last[3:7] - sign * problem.goal[3:7]) for sign in (1.0, -1.0))
         if (missed := 4.0 * np.arcsin(0.5 * chord)) > GOAL_LIMIT:
             problems.append(f"the goal's attitude is missed by {missed:.3g} rad")
+    return problems
+
+
+def _ends_and_limits(plan: PlanData) -> list[str]:
+    problems = other_ends(plan.problem, plan.configurations[0], plan.configurations[-1])
+    robot = plan.problem.robot
+    values = robot.joint_values(plan.configurations)
     corners = plan.at(np.arange(len(plan.configurations)) / plan.edges)
     if np.abs(corners - plan.configurations).max() > AGREEMENT:
         problems.append("the motion does not pass through the plan's configurations")

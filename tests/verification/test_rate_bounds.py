@@ -5,7 +5,7 @@ import pytest
 
 from ffsr_plan.dynamics.momentum import connections
 from ffsr_plan.verification.momentum_map import momentum_map
-from ffsr_plan.verification.motion_samples import base_frame_poses
+from ffsr_plan.verification.motion_samples import Sampler, base_frame_poses
 from ffsr_plan.verification.rate_bounds import RateBounds
 from ffsr_plan.verification.sweep import _Sweep
 from ffsr_plan.verification.urdf_reading import Bodies
@@ -23,12 +23,12 @@ def test_no_point_travels_farther_than_its_bound(mode, step):
         plan, rng = careless_plan(seed, mode, step)
         robot = plan.problem.robot
         bodies = Bodies(robot.urdf)
-        sweep = _Sweep(plan, bodies, 4)
+        sweep = _Sweep(Sampler(plan, bodies), bodies, 4)
         points = [rng.permutation(s.points)[:3] for s in bodies.shapes]
         order = np.arange(8)
         edge, time = np.arange(9) // 4, (np.arange(9) % 4) / 4
         edge[-1], time[-1] = 1, 1.0
-        sweep._samples = sweep.sampler.at(edge, time)
+        sweep._samples = sweep.course.at(edge, time)
         begin, end = time[:-1], np.where(edge[1:] > edge[:-1], 1.0, time[1:])
         intervals = sweep._intervals(edge[:-1], begin, end, order, order + 1)
         speeds, reach = sweep._rates.shapes, sweep._rates.reach

@@ -1,1 +1,1 @@
-"""Independent check of flights: motion, forces, limits and clearances over time."""
+"""Independent verification of flights: integrals, forces, limits and distances over time."""

@@ -1,7 +1,16 @@
-"""`FlightReport`: a flight checked by code of its own: motion, forces, limits, distances.
+"""Independent verification of a flight: integrals, inverse dynamics, limits, distances, ends.
 
-No code here calls the planner's kinematics, reaction, forces or distances. `flight.at` is sampled;
-see `flown_motion`, `flown_forces` and `flown_distances` for what is computed again from it.
+Nothing here calls the planner's reaction, dynamics, clearance or timing. The flight's states,
+`flight.at`, are taken as they are:
+
+- the joints' rates, integrated by momentum conservation of the URDF's bodies, must give the base's
+  attitude and, where it floats, its position; velocities and accelerations must be the derivatives
+  that they are said to be (`motion_integrals`);
+- Pinocchio's inverse dynamics of these states must give thrust, wheel and joint torques
+  (`force_balance`);
+- every limit is looked at at a hundred instants of each piece of the time law (`used_limits`);
+- distances are measured as along plans, halving intervals until nothing can be hidden between two
+  samples (`sweep`). The bounds on speeds behind that are those of the hundred instants.
 """
 
 from __future__ import annotations
@@ -11,174 +20,181 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ffsr_plan.core.checks import whole_number
-from ffsr_plan.core.contacts import approach
-from ffsr_plan.verification.flights.flown_distances import FlownDistances, flown_distances
-from ffsr_plan.verification.flights.flown_flight import FlownFlight
-from ffsr_plan.verification.flights.flown_forces import (
-    ForceErrors,
-    LimitUse,
-    force_errors,
-    limit_uses,
-)
-from ffsr_plan.verification.flights.flown_motion import MotionErrors, motion_errors
+from ffsr_plan.verification.flights.flight_ends import flight_ends
+from ffsr_plan.verification.flights.flown import Flown
+from ffsr_plan.verification.flights.flown_course import FlownCourse
+from ffsr_plan.verification.flights.force_balance import ForceErrors, force_errors
+from ffsr_plan.verification.flights.motion_integrals import MotionErrors, motion_errors, steps_of
+from ffsr_plan.verification.flights.used_limits import PER_PIECE, UsedLimits, used_limits
+from ffsr_plan.verification.recomputed_objective import AGREEMENT
+from ffsr_plan.verification.sweep import CONFIRMED, Swept, sweep
 from ffsr_plan.verification.urdf_reading import Bodies
+from ffsr_plan.verification.verify import collisions, other_motion, shapes_not_checked
 
-POSITION_LIMIT = 1e-5
-"""Allowed error of base position [m], joint values and rates [rad, rad/s, m or m/s]."""
-ATTITUDE_LIMIT = 1e-5
-"""Allowed error of the attitude [rad]."""
-FORCE_LIMIT = 1e-6
-"""Allowed error of forces and torques, relative to their peaks."""
-EXCESS = 1e-6
-"""Share by which a limit may be exceeded, for rounding."""
-GOAL_LIMIT = 1e-6
-"""Allowed error at start and goal [m or rad]."""
-REST_LIMIT = 1e-9
-"""Allowed speed at start and goal [m/s or rad/s]."""
-SAMPLES = 2_000
-"""Equal time steps at which distances are measured by default; more where they are needed."""
+MOTION_LIMIT = 1e-5
+"""Allowed difference of base and joints from their integrals [rad] and [m]."""
+RELATIVE_LIMIT = 1e-6
+"""Allowed difference of velocities and forces, and excess over limits, relative to the peaks."""
+DELTA_V_LIMIT = 1e-3
+"""Allowed relative difference of delta-v: |thrust| has kinks where it passes zero."""
+_SAMPLES = 2000  # of distances on the whole flight, at least
+_FEWEST = 4  # on each piece
 
 
 @dataclass(frozen=True)
 class FlightReport:
-    """Result of the `verify()` of a flight.
+    """Result of `flight.verify()`.
 
     Attributes:
         ok: whether there are no problems.
         problems: one sentence for each violated condition.
         not_checked: one sentence for each part of the flight that was not checked.
-        position_error: largest distance of the base from where thrust moves it [m].
-        attitude_error: largest angle from the attitude by conservation of momentum [rad].
-        joint_error: largest difference of joint values from the integral of their velocities
-            [rad or m].
-        thrust_error: largest error of the thrust, relative to its peak.
-        torque_error: largest error of torques of joints and wheels, relative to their peak.
-        limits: largest value over each limit by its name, at most 1.
-        least_clearance: least measured distance to an obstacle [m]; infinite without any.
-        least_self_separation: least measured distance of links that must not touch [m].
-        samples: number of configurations whose distances were measured.
+        attitude_error: largest angle of the base from its integrated attitude [rad].
+        position_error: largest distance of the base origin from its integrated place, in
+            `free-floating` from where the centre of mass at rest puts it [m].
+        joint_error: largest difference of joint values from the integrals of their rates [rad, m].
+        velocity_error: largest difference of velocities from the integrals of accelerations, and of
+            the base's angular velocity from what momentum conservation wants, relative to peaks.
+        thrust_error: largest difference of the thrust from inverse dynamics, relative to its peak.
+        wheel_error: of the moment on the base about the centre of mass, and of the wheels'
+            momentum, relative to their peaks; without wheels to the joint torques.
+        torque_error: of joint torques, relative to their peak.
+        delta_v_error: relative difference of delta-v from the integral of |thrust| / mass.
+        limits: largest share in use of each limit that there is, by name; 1 is all of it.
+        least_clearance: least link-to-sphere distance over all samples of the path [m].
+        clearance_bound: lower bound on it all along the path, between the samples too [m]; pulses
+            displace the robot from its path by at most `flight.corner_cut`.
+        least_self_separation: least distance of links that must not touch, over all samples [m].
+        samples: number of configurations whose distances were computed.
+        largest_gap: longest way of any point between two samples that may hide a contact [m]; 0
+            where there are none. Such a flight is not ok.
     """
 
     ok: bool
     problems: tuple[str, ...]
     not_checked: tuple[str, ...]
-    position_error: float
     attitude_error: float
+    position_error: float
     joint_error: float
+    velocity_error: float
     thrust_error: float
+    wheel_error: float
     torque_error: float
+    delta_v_error: float
     limits: dict[str, float]
     least_clearance: float
+    clearance_bound: float
     least_self_separation: float
     samples: int
+    largest_gap: float
 
 
-def verify_flight(flight: FlownFlight, samples: int = SAMPLES) -> FlightReport:
+def verify_flight(flight: Flown, clearance: float) -> FlightReport:
     """Verify a flight from its states alone.
 
     Args:
         flight: the flight.
-        samples: least number of equal time steps at which distances are measured.
+        clearance: clearance to confirm along its path, infinite without obstacles [m].
 
-    Raises:
-        InvalidInput: `samples` is not a positive whole number, or too large.
+    Returns:
+        The measured values, the problems found, and what was not checked.
     """
-    steps = whole_number("samples", samples, at_least=1, at_most=100_000)
     robot = flight.problem.robot
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
-    motion, forces = motion_errors(flight, bodies), force_errors(flight)
-    uses, distances = limit_uses(flight), flown_distances(flight, bodies, steps)
+    used = used_limits(flight)
+    steps = steps_of(flight, bodies, used)
+    motion, forces = motion_errors(flight, steps), force_errors(flight, steps)
+    course = FlownCourse(flight, bodies, used, clearance)
+    swept = sweep(course, bodies, max(_FEWEST, -(-_SAMPLES // course.edges)))
     problems = (
-        *_other_motion(motion),
-        *_other_forces(forces),
-        *_exceeded(uses),
-        *_collisions(flight, distances),
-        *_ends(flight),
+        *_other_integrals(motion, forces),
+        *_exceeded(used),
+        *flight_ends(flight, steps.inner.velocities, RELATIVE_LIMIT),
+        *_pulses(flight, swept),
+        *collisions(clearance, swept, "flight", "piece"),
+        *other_motion(swept),
     )
-    clearance, separation = distances.clearance, distances.separation
+    figures = (*motion, *forces)
+    if not swept.finite or not np.all(np.isfinite(figures)):
+        problems += ("some of the figures are not numbers",)
     return FlightReport(
-        ok=not problems,
-        problems=problems,
-        not_checked=tuple(_not_checked(flight, bodies)),
-        position_error=motion.position,
-        attitude_error=motion.attitude,
-        joint_error=max(motion.joints, motion.rates),
-        thrust_error=forces.thrust,
-        torque_error=max(forces.torques, forces.wheel_momentum),
-        limits={use.name: use.share for use in uses},
-        least_clearance=np.inf if clearance is None else clearance.distance,
-        least_self_separation=np.inf if separation is None else separation.distance,
-        samples=distances.samples,
+        not problems,
+        problems,
+        tuple(_not_checked(flight, bodies)),
+        *figures[:4],
+        *forces,
+        motion.delta_v,
+        limits=used.shares,
+        least_clearance=swept.clearance.value if swept.clearance else np.inf,
+        clearance_bound=float(swept.clearance_bound),
+        least_self_separation=swept.separation.value if swept.separation else np.inf,
+        samples=swept.samples,
+        largest_gap=max((place.value for place in swept.hidden if place), default=0.0),
     )
 
 
-def _other_motion(errors: MotionErrors) -> Iterator[str]:
-    if not errors.position <= POSITION_LIMIT:
-        yield f"the base is {errors.position:.3g} m from where its thrust moves it"
-    if not errors.attitude <= ATTITUDE_LIMIT:
-        yield f"the attitude is {errors.attitude:.3g} rad from that of momentum conservation"
-    if not errors.joints <= POSITION_LIMIT:
-        yield f"joints are {errors.joints:.3g} rad or m from the integral of their velocities"
-    if not errors.rates <= POSITION_LIMIT:
-        yield f"joint velocities are {errors.rates:.3g} from the integral of their accelerations"
+def _other_integrals(motion: MotionErrors, forces: ForceErrors) -> Iterator[str]:
+    for what, error, unit in (
+        ("the base's attitude is not that of its joints' motion", motion.attitude, "rad"),
+        ("the base is not where its motion leads", motion.position, "m"),
+        ("joints are not where their rates lead", motion.joints, "rad or m"),
+    ):
+        if error > MOTION_LIMIT:
+            yield f"{what}: off by {error:.3g} {unit}"
+    for what, error in (
+        ("velocities are not the integrals of accelerations", motion.velocities),
+        ("thrust is not what the motion needs", forces.thrust),
+        ("the moment on the base is not what the motion needs", forces.wheels),
+        ("joint torques are not what the motion needs", forces.torques),
+    ):
+        if error > RELATIVE_LIMIT:
+            yield f"{what}: relative error {error:.3g}"
+    if motion.delta_v > DELTA_V_LIMIT:
+        yield f"delta-v is not the integral of thrust / mass: relative error {motion.delta_v:.3g}"
 
 
-def _other_forces(errors: ForceErrors) -> Iterator[str]:
-    for what, error in zip(("thrust", "torques", "wheel momentum"), errors, strict=True):
-        if not error <= FORCE_LIMIT:
-            yield f"inverse dynamics gives another {what}: {error:.3g} of the peak"
+def _exceeded(used: UsedLimits) -> Iterator[str]:
+    for name, share in used.shares.items():
+        if share > 1.0 + RELATIVE_LIMIT:
+            yield f"{name} is {share:.6g} times its limit"
+    if used.beyond > AGREEMENT:
+        yield "a joint leaves its limits"
 
 
-def _exceeded(uses: list[LimitUse]) -> Iterator[str]:
-    for use in uses:
-        if not use.share <= 1.0 + EXCESS:
-            yield f"{use.name} is exceeded: {use.share:.6g} of the limit at {use.time:.4g} s"
+def _pulses(flight: Flown, swept: Swept) -> Iterator[str]:
+    """Whether pulses are what they are said to be, and leave the path by less than is clear."""
+    sizes = np.linalg.norm(flight.pulses, axis=1)
+    cut = float(np.max(sizes * flight.pulse_durations, initial=0.0)) / 8.0
+    if abs(cut - flight.corner_cut) > AGREEMENT:
+        yield f"pulses leave the path by {cut:.3g} m, not {flight.corner_cut:.3g} m"
+    if cut > 0.0 and cut >= swept.clearance_bound:
+        free = f"only {swept.clearance_bound:.3g} m are free"
+        yield f"pulses leave the path by {cut:.3g} m, but {free}"
+    middles = flight.pulse_times[:, None] + flight.pulse_durations[:, None] * [-0.25, 0.25]
+    pushes = flight.pulse_accelerations(middles.ravel()).reshape(-1, 2, 3)
+    given = pushes * flight.pulse_durations[:, None, None] - flight.pulses[:, None]
+    if np.max(np.abs(given), initial=0.0) > RELATIVE_LIMIT * np.max(sizes, initial=0.0):
+        yield "pulses do not add up to the changes of velocity that they stand for"
 
 
-def _collisions(flight: FlownFlight, distances: FlownDistances) -> Iterator[str]:
-    near = distances.clearance
-    if near is not None and near.distance <= flight.corner_cut:
-        pulses = (
-            f", and pulses displace it by {flight.corner_cut:.3g} m" if flight.corner_cut else ""
-        )
-        words = approach(near.distance)
-        yield f"link '{near.names[0]}' {words} an obstacle at {near.time:.4g} s{pulses}"
-    near = distances.separation
-    if near is not None and near.distance <= 0.0:
-        yield f"two links touch at {near.time:.4g} s: '{near.names[0]}' and '{near.names[1]}'"
+def _not_checked(flight: Flown, bodies: Bodies) -> Iterator[str]:
+    yield "that no flight within the limits is shorter, or calmer in the same time"
+    yield f"limits, and rates that bound the travel, between {PER_PIECE} instants of each piece"
+    if flight.problem.scene.excess > 0.0:
+        yield "that the spheres cover what they stand for, and by how much they exceed it"
+    yield from shapes_not_checked(flight.problem.robot, bodies)
 
 
-def _ends(flight: FlownFlight) -> Iterator[str]:
-    problem = flight.problem
-    ends = flight.at([0.0, flight.duration])
-    if np.abs(ends.configurations[0] - problem.start).max() > GOAL_LIMIT:
-        yield "the flight does not begin at the start"
-    missed = ends.configurations[1][7:] - problem.goal[7:]
-    if problem.mode.has_thrusters:
-        missed = np.append(missed, ends.base_position[1] - problem.goal[:3])
-    if np.max(np.abs(missed), initial=0.0) > GOAL_LIMIT:
-        yield "the flight does not end at the goal"
-    if problem.reach_attitude or problem.mode.has_wheels:
-        reached, goal = ends.attitudes[1], problem.goal[3:7]
-        chord = min(np.linalg.norm(reached - sign * goal) for sign in (1.0, -1.0))
-        if (angle := 4.0 * np.arcsin(0.5 * chord)) > GOAL_LIMIT:
-            yield f"the goal's attitude is missed by {angle:.3g} rad"
-    for speed, end in zip(np.abs(ends.velocities).max(axis=1), ("begin", "end"), strict=True):
-        if speed > REST_LIMIT:
-            yield f"the robot does not rest at the {end}"
+def clearance_to_confirm(cut: float, obstacles: int) -> float:
+    """The clearance [m] that a path without a proof of its own has to keep.
+
+    Args:
+        cut: by how much pulses leave it [m].
+        obstacles: their number.
+    """
+    if not obstacles:
+        return np.inf
+    return cut + 2.0 * CONFIRMED if cut > 0.0 else 0.0
 
 
-def _not_checked(flight: FlownFlight, bodies: Bodies) -> Iterator[str]:
-    robot = flight.problem.robot
-    yield "that nothing touches between samples: their ways were measured, not bounded"
-    if len(flight.pulse_times):
-        yield "thrust and torques while arms move during a pulse"
-    if robot.disabled_pairs:
-        pairs = ", ".join(f"{a} and {b}" for a, b in robot.disabled_pairs)
-        yield f"pairs of links that the SRDF exempts: {pairs}"
-    if bodies.unchecked:
-        yield f"links without a shape for collisions: {', '.join(bodies.unchecked)}"
-
-
-__all__ = ["FlightReport", "verify_flight"]
+__all__ = ["FlightReport", "clearance_to_confirm", "verify_flight"]

@@ -1,0 +1,63 @@
+"""Begin and end of a flight: at rest at start and goal, or with a frame's pose and twist."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.dynamics.inverse_dynamics import States
+from ffsr_plan.meetings.meeting import Meeting
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.verification.flights.flown import Flown
+from ffsr_plan.verification.verify import other_ends
+
+ARRIVAL_LIMIT = 1e-9
+"""Allowed error of pose and twist of a frame that is met [m, rad, m/s, rad/s]."""
+
+
+def flight_ends(flight: Flown, velocities: Array, still: float) -> list[str]:
+    """Where a flight begins or ends otherwise than it has to.
+
+    Args:
+        flight: the flight.
+        velocities: (N, nv) on its way.
+        still: velocity that counts as rest, as a share of the largest one.
+    """
+    problem, states = flight.problem, flight.at([0.0, flight.duration])
+    slow = still * float(np.max(np.abs(velocities)))
+    begins, ends = np.max(np.abs(states.velocities), axis=1) <= slow
+    if flight.meeting is None:
+        problems = other_ends(problem, *states.configurations)
+        return problems if begins and ends else [*problems, "it does not rest at both of its ends"]
+    problems = _missed(problem, flight.meeting, states)
+    if np.max(np.abs(states.configurations[0] - problem.start)) > ARRIVAL_LIMIT:
+        problems.append("the motion does not begin at the start")
+    if flight.duration != flight.meeting.at:
+        problems.append(
+            f"it arrives at {flight.duration:.12g} s, not at {flight.meeting.at:.12g} s"
+        )
+    return problems if begins else [*problems, "it does not begin at rest"]
+
+
+def _missed(problem: Problem, meeting: Meeting, states: States) -> list[str]:
+    """Pose and twist of the frame that are not those of the meeting, by Pinocchio's kinematics."""
+    model = problem.robot.model
+    data, frame = model.createData(), model.getFrameId(meeting.frame)
+    pin.forwardKinematics(model, data, states.configurations[1], states.velocities[1])
+    pin.updateFramePlacement(model, data, frame)
+    pose, twist = data.oMf[frame], pin.getFrameVelocity(model, data, frame, pin.LOCAL_WORLD_ALIGNED)
+    errors = {
+        "velocity": np.array(twist.linear) - meeting.velocity,
+        "angular velocity": np.array(twist.angular) - meeting.angular_velocity,
+    }
+    if meeting.position is not None:
+        errors["position"] = np.array(pose.translation) - meeting.position
+    if meeting.attitude is not None:
+        gamma_to_alpha = pin.rpy.rpyToMatrix(np.asarray(meeting.attitude)[::-1])
+        errors["attitude"] = pin.log3(gamma_to_alpha.T @ pose.rotation)
+    return [
+        f"the frame's {what} misses the meeting's by {np.max(np.abs(error)):.3g}"
+        for what, error in errors.items()
+        if not np.max(np.abs(error)) <= ARRIVAL_LIMIT
+    ]
