@@ -17,6 +17,7 @@ from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.dynamics.motion import Motion
 
 _SMALLEST_STEP = 1e-12  # [m or rad] smaller steps over an edge count as zero
+_HARDLY = 1e-9  # [rad or m] joint steps that, as x, would drown in the rounding of its sum
 _PARALLEL = 1e-7  # relative change of direction below which there is no corner
 
 
@@ -24,7 +25,7 @@ class StraightRuns(NamedTuple):
     """The r straight runs of a motion of m edges; edges without motion belong to none.
 
     Along a run x grows by one if the joint values and the base's rotation change by a vector of
-    length one or, if they do not change, if the base moves by one metre.
+    length one or, if they hardly change, if the base moves by one metre.
 
     Attributes:
         corners: (m + 1,) x at the nodes.
@@ -96,7 +97,8 @@ def straight_runs(motion: Motion) -> StraightRuns:
     steps = np.hstack([motion.base_steps(), rotations, joint_steps])
     steps[np.abs(steps) <= _SMALLEST_STEP] = 0.0
     scale = np.linalg.norm(steps[:, 3:], axis=1)
-    scale = np.where(scale > 0.0, scale, np.linalg.norm(steps[:, :3], axis=1))
+    base = np.linalg.norm(steps[:, :3], axis=1)
+    scale = np.where((scale > _HARDLY) | (base == 0.0), scale, base)
     moving = np.flatnonzero(scale > 0.0)
     directions = steps[moving] / scale[moving, None]
     starts: list[int] = []  # indices into `moving`

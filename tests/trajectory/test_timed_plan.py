@@ -291,3 +291,16 @@ def test_states_name_the_base_attitude_and_the_joint_velocities():
     assert np.array_equal(states.joint_velocities, states.velocities[:, 6:])
     assert repr(states) == f"States(21 instants, {flight.motion.robot.nd} joints)"
     assert repr(flight).startswith(f"TimedMotion({flight.duration:.4g} s, 3 rests, 0 pulses")
+
+
+def test_the_base_moves_evenly_where_joints_hardly_move(robot):
+    """Joint steps of 1e-11 rad after one of 1 rad: the rounding of their sum moves nothing."""
+    joints = np.zeros((5, robot.nd))
+    joints[1:, 0] = 1.0 + 1e-11 * np.arange(4)
+    way = np.outer(np.arange(5.0), [0.25, 0.0, 0.0])
+    ends = [robot.assemble(way[k], rotations.IDENTITY, joints[k]) for k in (0, -1)]
+    flight = flown(Motion(robot, "free-flying", *ends, way, joints), **USUAL)
+    times, h = inside(flight, count=200)
+    before, now, after = (flight.at(times + k * h) for k in (-1, 0, 1))
+    moved = after.base_position - before.base_position
+    assert np.allclose(moved, 2.0 * h[:, None] * now.base_velocity, atol=1e-10)

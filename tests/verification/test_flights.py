@@ -238,3 +238,25 @@ def test_a_report_says_what_it_did_not_check(flight):
     told = " ".join(flight.verify().not_checked)
     assert "no flight within the limits is shorter" in told
     assert "100 instants" in told
+
+
+def test_meetings_verify_and_missed_ones_do_not():
+    robot = fp.load_robot("planar_dual_arm")
+    goal = robot.configuration((3.0, 0.3, 0.0), joints={"right_1": 0.3, "right_2": -0.6})
+    lattice = fp.Lattice(12, fp.Axis(4, 0.1))
+    problem = fp.Problem(robot, fp.Scene(), robot.neutral(), goal, lattice=lattice)
+    meeting = fp.Meeting("right_link_3", at=120.0, velocity=(0.01, -0.004, 0.0))
+    flight = fp.plan(problem, "lattice-optimum").timed(**LIMITS, meeting=meeting)
+    report = flight.verify()
+    assert report.ok, report.problems
+    faster = replace(meeting, velocity=(0.011, -0.004, 0.0))
+    assert "velocity misses" in complaints(report_of(flight, meeting=faster))
+    later = replace(meeting, at=121.0)
+    assert "arrives at" in complaints(report_of(flight, meeting=later))
+    elsewhere = replace(meeting, position=(9.0, 0.0, 0.0))
+    assert "position misses" in complaints(report_of(flight, meeting=elsewhere))
+    at = flight.at([120.0]).configurations[0]
+    angles = fp.load_robot("planar_dual_arm").components(at).attitude
+    turned = replace(meeting, attitude=np.asarray(angles) + (0.0, 0.0, 1.0))
+    assert "attitude misses" in complaints(report_of(flight, meeting=turned))
+    assert "does not end at the goal" in complaints(report_of(flight, meeting=None))
