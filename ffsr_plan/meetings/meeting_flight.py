@@ -110,7 +110,8 @@ def _pose_not_met(arrival: Arrival) -> InvalidInput:
     value = {"frame": meeting.frame, "position": np.round(arrival.pose.translation, 6).tolist()}
     allowed = (
         "a pose of the frame that the joints reach from the plan's goal; plan to the pose first, "
-        "by problem.reaching"
+        f"by problem.reaching, or arrive before {meeting.at:.6g} s, as an approach takes a "
+        "sixteenth of the flight or longer"
     )
     return InvalidInput("meeting.position, meeting.attitude", value, allowed)
 

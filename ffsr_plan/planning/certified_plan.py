@@ -52,16 +52,15 @@ class Plan(PlanData):
         """The plan flown within limits, from rest at the start to rest at the goal.
 
         The flight follows the proven smooth curve of `smooth`, or with `corners="rest"` exactly the
-        proven path, with a rest at every corner. A quantity without a value is not limited;
-        `joint_velocity`, `joint_acceleration` and `joint_jerk` default to the URDF's. Limits for
-        joints are one number for all, or numbers by name, and the URDF's for joints not named.
+        proven path, with a rest at every corner. What has no value is not limited, except that
+        `joint_velocity`, `joint_acceleration` and `joint_jerk` default to the URDF's. Those of
+        joints are one number or numbers by name; those of a base that nothing moves are refused.
 
         Args:
             corners: `smooth` or `rest`.
             duration: of a smooth flight, the calmest that takes it [s]; by default the shortest.
             joint_acceleration: of every joint that moves [rad/s^2 or m/s^2].
-            thruster_acceleration: thrust / mass, and with `corners="rest"` that of the base origin
-                [m/s^2]. It and other limits of the base are refused where nothing moves it.
+            thruster_acceleration: thrust / mass, or with `corners="rest"` of the base [m/s^2].
             joint_velocity: [rad/s or m/s].
             base_velocity: of the base origin [m/s].
             joint_torque: [N m or N].
@@ -69,13 +68,11 @@ class Plan(PlanData):
             thruster_jerk: of the base origin [m/s^3].
             turn_velocity: angular velocity of a base, refused without wheels [rad/s].
             turn_acceleration: angular acceleration of a base that wheels rotate [rad/s^2].
-            velocity_jump: with `corners="rest"`, change of the base's velocity by one pulse of the
-                thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
+            velocity_jump: with `corners="rest"`, by a pulse at a corner [m/s]; see `TimedPlan`.
             meeting: what a frame arrives with, and when, instead of a rest; see `Meeting`.
 
         Raises:
-            InvalidInput: a limit that cannot be or is missing, a duration or a meeting that cannot
-                be, pulses that cut corners by more than the clearance, or no motion at all.
+            InvalidInput: limits, pulses, a duration or a meeting that cannot be, or no motion.
             UnprovenCurve: see `smooth`.
         """
         limits = read_limits(
