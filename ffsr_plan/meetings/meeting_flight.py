@@ -123,7 +123,7 @@ def _too_early(arrival: Arrival, limits: FlightLimits) -> InvalidInput:
         twist = [*arrival.meeting.velocity.tolist(), *arrival.meeting.angular_velocity.tolist()]
         allowed = "a twist that the limits on thrust, torques and accelerations allow at some time"
         return InvalidInput("meeting.velocity, meeting.angular_velocity", twist, allowed)
-    allowed = f"at least {_rounded_up(least)} s, the earliest within these limits"
+    allowed = f"at least {_rounded_up(least)} s, about the earliest within these limits"
     return InvalidInput("meeting.at", at, allowed)
 
 

@@ -73,7 +73,9 @@ def timed_approach(
 
 
 def earliest(arrival: Arrival, limits: FlightLimits, late: float) -> float | None:
-    """Earliest time of arrival [s] to 1 %, obstacles left aside; None if there is none at all.
+    """Earliest time of arrival [s], by one window, to 1 %; None if there is none at all.
+
+    Obstacles are left aside.
 
     Args:
         arrival: what is demanded of the end.
