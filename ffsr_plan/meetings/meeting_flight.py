@@ -110,7 +110,8 @@ def _pose_not_met(arrival: Arrival) -> InvalidInput:
     value = {"frame": meeting.frame, "position": np.round(arrival.pose.translation, 6).tolist()}
     allowed = (
         "a pose of the frame that the joints reach from the plan's goal; plan to the pose first, "
-        "by problem.reaching"
+        f"by problem.reaching, or arrive before {meeting.at:.6g} s, as an approach takes a "
+        "sixteenth of the flight or longer"
     )
     return InvalidInput("meeting.position, meeting.attitude", value, allowed)
 
@@ -122,7 +123,7 @@ def _too_early(arrival: Arrival, limits: FlightLimits) -> InvalidInput:
         twist = [*arrival.meeting.velocity.tolist(), *arrival.meeting.angular_velocity.tolist()]
         allowed = "a twist that the limits on thrust, torques and accelerations allow at some time"
         return InvalidInput("meeting.velocity, meeting.angular_velocity", twist, allowed)
-    allowed = f"at least {_rounded_up(least)} s, the earliest within these limits"
+    allowed = f"at least {_rounded_up(least)} s, about the earliest within these limits"
     return InvalidInput("meeting.at", at, allowed)
 
 

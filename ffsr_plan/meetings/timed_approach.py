@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.errors import IntegrationError, InvalidInput
 from ffsr_plan.curves.smooth_curve import SmoothCurve
 from ffsr_plan.meetings.approach import Approach, Found
 from ffsr_plan.meetings.arrival import Arrival
@@ -56,7 +56,10 @@ def timed_approach(
     """
     pieces = _pieces(arrival.motion.edges, window, factor)
     speed = _SPEED * pieces / at
-    found = Approach(arrival, pieces, window, speed).found()
+    try:
+        found = Approach(arrival, pieces, window, speed).found()
+    except IntegrationError:  # joints that turn many times over, for a very late meeting
+        found = None
     if found is None:
         return TimedApproach(None, None)
     arrival.check(found.end, limits)
@@ -70,7 +73,9 @@ def timed_approach(
 
 
 def earliest(arrival: Arrival, limits: FlightLimits, late: float) -> float | None:
-    """Earliest time of arrival [s] to 1 %, obstacles left aside; None if there is none at all.
+    """Earliest time of arrival [s], by one window, to 1 %; None if there is none at all.
+
+    Obstacles are left aside.
 
     Args:
         arrival: what is demanded of the end.

@@ -124,3 +124,16 @@ def test_limits_of_a_meeting_are_those_of_other_flights(plan):
     expected = limits_of(flight.curve, **LIMITS[MODE])
     for got, wanted in zip(flight.limits, expected, strict=True):
         assert np.array_equal(got, wanted)
+
+
+def test_joints_that_would_leave_their_limits_on_the_way_are_named(plan):
+    """The later the meeting, the longer the joints turn at its rates before it."""
+    late = meeting_for(NAME, at=1e5)
+    with pytest.raises(fp.InvalidInput, match=r"joint \w+ on the way.*all along the approach"):
+        plan.timed(meeting=late, **LIMITS[MODE])
+
+
+def test_far_too_late_a_meeting_is_refused(plan):
+    late = meeting_for(NAME, at=1e8)
+    with pytest.raises(fp.InvalidInput, match=r"arrive before 1e\+08 s"):
+        plan.timed(meeting=late, **LIMITS[MODE])

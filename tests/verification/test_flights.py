@@ -257,6 +257,6 @@ def test_meetings_verify_and_missed_ones_do_not():
     assert "position misses" in complaints(report_of(flight, meeting=elsewhere))
     at = flight.at([120.0]).configurations[0]
     angles = fp.load_robot("planar_dual_arm").components(at).attitude
-    turned = replace(meeting, attitude=np.asarray(angles) + (0.0, 0.0, 1.0))
+    turned = replace(meeting, attitude=np.add(angles, [0.0, 0.0, 1.0]))
     assert "attitude misses" in complaints(report_of(flight, meeting=turned))
     assert "does not end at the goal" in complaints(report_of(flight, meeting=None))
