@@ -259,4 +259,4 @@ def test_meetings_verify_and_missed_ones_do_not():
     angles = fp.load_robot("planar_dual_arm").components(at).attitude
     turned = replace(meeting, attitude=np.add(angles, [0.0, 0.0, 1.0]))
     assert "attitude misses" in complaints(report_of(flight, meeting=turned))
-    assert "does not end at the goal" in complaints(report_of(flight, meeting=None))
+    assert "does not rest at both" in complaints(report_of(flight, meeting=None))
