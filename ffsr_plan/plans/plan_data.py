@@ -85,6 +85,11 @@ class PlanData:
         """(m + 1, nq) base poses in the world [m, quaternion xyzw] and joints at the nodes."""
         return frozen(self.motion.configurations())
 
+    @property
+    def attitudes(self) -> Array:
+        """(m + 1, 4) attitudes of the base at the nodes, base axes to world axes (xyzw)."""
+        return self.configurations[:, 3:7]
+
     @cached_property
     def motion_objective(self) -> float:
         """F of the whole motion [length units]: L + delta sum over all edges of 1 / d.

@@ -89,6 +89,7 @@ def test_the_base_turns_although_nobody_turned_it(fig2a_plan):
     first, last = fig2a_plan.configurations[[0, -1], 3:7]
     assert rotations.angle_between(first, last) > 0.1
     assert np.allclose(fig2a_plan.arrival_attitude, rotations.to_angles(last))
+    assert np.array_equal(fig2a_plan.attitudes, fig2a_plan.motion.attitudes)
 
 
 def test_the_objective_recomputed_from_scratch_is_the_plans(fig2a_plan):
