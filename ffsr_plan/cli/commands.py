@@ -113,6 +113,9 @@ def plan(
         float | None,
         typer.Option(help="Seconds for the planning; the best proven path is kept."),
     ] = None,
+    until: Annotated[
+        str, typer.Option(help="first: the first proven path is enough, without a lattice.")
+    ] = "end",
     out: Out = None,
     force: Force = False,
     duration: Annotated[
@@ -150,7 +153,7 @@ def plan(
             raise InvalidInput("--watch", False, "--watch together with --port or --pace")
         live = LiveOptions(port, browser, pace) if watch else None
         options = Options(
-            planner, seed, refine, colonies, workers, time_limit, duration, live, pictures
+            planner, seed, refine, colonies, workers, time_limit, until, duration, live, pictures
         )
         plan_and_report(scenario, options, target, check, output)
 

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 
 from ffsr_plan.cli.output import Output
 from ffsr_plan.cli.plan_figures import plan_figures, report_figures
@@ -50,6 +50,7 @@ class Options(NamedTuple):
         colonies: number of independent colonies.
         workers: number of processes.
         time_limit: of the planning [s].
+        until: `first` for the first path that is proven.
         duration: of the motion [s], for the peak momentum of the wheels.
         live: options of the live view; None for no live view.
         pictures: whether to draw the figures.
@@ -61,6 +62,7 @@ class Options(NamedTuple):
     colonies: int = 1
     workers: int = 1
     time_limit: float | None = None
+    until: str = "end"
     duration: float = 600.0
     live: LiveOptions | None = None
     pictures: bool = True
@@ -209,5 +211,6 @@ def _plan_with_progress(
             colonies=options.colonies,
             workers=options.workers,
             time_limit=options.time_limit,
+            until=cast("Literal['end', 'first']", options.until),
             on_cycle=show if has_cycles and (on_terminal or on_cycle) else None,
         )

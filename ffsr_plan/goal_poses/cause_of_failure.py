@@ -172,7 +172,7 @@ def _better_place(target: PoseTarget) -> str:
     least = _least_error(held)
     away = target.base_position - target.position
     distance = float(np.linalg.norm(away))
-    what, found = "another start" if target.mode.floats else "another base_position", ""
+    what, found = "another start" if target.mode.floats else "another base position of the goal", ""
     for words, sign in (("farther from", 1.0), ("nearer to", -1.0)):
         step = sign * min(least, 0.9 * distance) / max(distance, 1e-9)
         moved = held._replace(base_position=target.base_position + step * away)

@@ -266,3 +266,12 @@ def test_a_scenario_without_a_lattice_is_planned(run, tmp_path):
     (tmp_path / "both.toml").write_text(free.replace("[window]", "[lattice]\n[window]"))
     refused = run("plan", "both.toml")
     assert refused.exit_code == 2
+
+
+def test_without_a_lattice_the_first_path_may_be_enough(run):
+    result = run("plan", "cup", "--until", "first", "--no-verify", "--json")
+    assert result.exit_code == 0, result.output
+    assert json.loads(result.stdout)["plan"]["planner"] == "tree-planner"
+    refused = run("plan", "fig2a", "--until", "first")
+    assert refused.exit_code == 2
+    assert "tree-planner" in refused.output

@@ -282,7 +282,7 @@ def test_a_pose_that_is_too_far_or_too_close_is_told_apart(mode, ahead, words):
         fp.inverse_kinematics(
             robot, None, "tool", (ahead, 0.0, 0.0), start=robot.neutral(), mode=mode
         )
-    what = "another start" if mode == "free-floating" else "another base_position"
+    what = "another start" if mode == "free-floating" else "another base position of the goal"
     assert raised.value.advice[-1].startswith(f"{what}, {words} the pose")
 
 
