@@ -34,6 +34,9 @@ Out = Annotated[
     typer.Option(metavar="DIRECTORY", help="Directory for plan.json, plan.html and the figures."),
 ]
 PlanFile = Annotated[str, typer.Argument(metavar="PLAN.json")]
+Until = Annotated[
+    str, typer.Option(help="first: the first proven path is enough, without a lattice.")
+]
 Port = Annotated[int, typer.Option(help="Port of the page on 127.0.0.1; 0 for any free one.")]
 Browser = Annotated[
     bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
@@ -113,9 +116,7 @@ def plan(
         float | None,
         typer.Option(help="Seconds for the planning; the best proven path is kept."),
     ] = None,
-    until: Annotated[
-        str, typer.Option(help="first: the first proven path is enough, without a lattice.")
-    ] = "end",
+    until: Until = "end",
     out: Out = None,
     force: Force = False,
     duration: Annotated[

@@ -25,8 +25,7 @@ class FlightFigures(NamedTuple):
         longest_pulse: [s]; None without pulses.
         corner_cut: by which pulses leave the path at most [m]; None without pulses.
         delta_v: of the translation [m/s].
-        straight_delta_v: the same along a straight line in the same time [m/s]; None with rests at
-            corners.
+        straight_delta_v: the same along a straight line in the same time [m/s].
         peak_thrust: [N].
         peak_wheel_torque: (3,) in base axes [N m]; None without wheels.
         peak_wheel_momentum: (3,) in base axes [N m s]; None without wheels.
@@ -42,7 +41,7 @@ class FlightFigures(NamedTuple):
     longest_pulse: float | None
     corner_cut: float | None
     delta_v: float
-    straight_delta_v: float | None
+    straight_delta_v: float
     peak_thrust: float
     peak_wheel_torque: Array | None
     peak_wheel_momentum: Array | None
@@ -72,7 +71,7 @@ def flight_figures(flight: SmoothFlight | TimedPlan) -> FlightFigures:
         longest_pulse=float(np.max(flight.pulse_durations)) if count else None,
         corner_cut=flight.corner_cut if count else None,
         delta_v=flight.delta_v,
-        straight_delta_v=smooth.straight_delta_v if smooth else None,
+        straight_delta_v=flight.straight_delta_v,
         peak_thrust=float(np.max(np.linalg.norm(thrust, axis=1))),
         peak_wheel_torque=np.max(np.abs(states.wheel_torque), axis=0) if wheels else None,
         peak_wheel_momentum=np.max(np.abs(states.wheel_momentum), axis=0) if wheels else None,

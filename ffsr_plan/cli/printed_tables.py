@@ -121,7 +121,7 @@ def flight_rows(flight: FlightFigures) -> Iterator[tuple[str, str]]:
         yield "pulses", text
         yield "corner cut by them", f"at most {flight.corner_cut:.3g} m"
     yield "delta-v of the translation", f"{flight.delta_v:.4g} m/s"
-    if flight.straight_delta_v is not None:
+    if flight.straight_delta_v:
         yield "  along a straight line", f"{flight.straight_delta_v:.4g} m/s in the same time"
     yield "peak thrust", f"{flight.peak_thrust:.3g} N"
     for name, values, unit in (

@@ -12,6 +12,7 @@ from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
+from ffsr_plan.trajectory.straight_flight import change_of_place, straight_delta_v
 from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
 
 if TYPE_CHECKING:
@@ -46,6 +47,14 @@ class TimedPlan(FlightPictures, TimedMotion):
 
     problem: Problem
     limits: FlightLimits
+
+    @property
+    def straight_delta_v(self) -> float:
+        """What the same change of place needs in the same time along a straight line [m/s]."""
+        if self.mode.floats:
+            return 0.0
+        change = change_of_place(self.robot, self.motion.configurations()[[0, -1]])
+        return straight_delta_v(change, self.duration, float(self.limits.acceleration[0]))
 
     @property
     def meeting(self) -> None:

@@ -10,12 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import finite_array
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.inverse_dynamics import States, states_along
-from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.smooth_flight.curve_samples import Curve, dynamics_at
 from ffsr_plan.smooth_flight.pace import Pace
@@ -23,6 +21,7 @@ from ffsr_plan.smooth_flight.pace_search import EndSpeeds
 from ffsr_plan.smooth_flight.timed_curve import SMALLEST_RATE, pace_within
 from ffsr_plan.trajectory.flight import Flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
+from ffsr_plan.trajectory.straight_flight import change_of_place, straight_delta_v
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # on each piece of the law
 
@@ -195,15 +194,10 @@ def _delta_v(curve: Curve, pace: Pace) -> float:
 
 
 def _straight_delta_v(curve: Curve, duration: float, strength: float) -> float:
-    """Least delta-v [m/s] between the centres of mass at both ends, |thrust| / mass limited.
-
-    A coast at the speed w between pushes of w / a covers d = w (t - w / a).
-    """
+    """Least delta-v [m/s] between the centres of mass at both ends, |thrust| / mass limited."""
     if curve.mode.floats:
         return 0.0
-    distance = float(np.linalg.norm(_change_of_place(curve)))
-    root = np.sqrt(max(duration**2 - 4.0 * distance / strength, 0.0))
-    return 4.0 * distance / (duration + float(root))
+    return straight_delta_v(_change_of_place(curve), duration, strength)
 
 
 def _delta_v_of_two_pulses(curve: Curve, pace: Pace) -> float:
@@ -223,10 +217,4 @@ def _delta_v_of_two_pulses(curve: Curve, pace: Pace) -> float:
 
 def _change_of_place(curve: Curve) -> Array:
     """(3,) from the centre of mass at the start of a curve to that at its end, world axes [m]."""
-    ends = curve.at(np.array([0.0, curve.pieces]))
-    base = ends.configurations
-    centers = base[:, :3] + rotations.rotate(
-        base[:, 3:7], centers_of_mass(curve.robot, ends.joints)
-    )
-    change: Array = centers[1] - centers[0]
-    return change
+    return change_of_place(curve.robot, curve.at(np.array([0.0, curve.pieces])).configurations)

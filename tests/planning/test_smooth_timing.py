@@ -73,3 +73,11 @@ def test_a_curve_of_least_fuel_flies_with_the_delta_v_that_it_promises(fig2a_pla
     assert flight.delta_v == pytest.approx(curve.delta_v(400.0), rel=0.02)
     assert flight.delta_v < 0.5 * fig2a_plan.timed(duration=400.0, **LIMITS).delta_v
     assert flight.verify().ok
+
+
+def test_no_flight_needs_less_than_the_straight_line(fig2a_plan, flight):
+    rests = fig2a_plan.timed(corners="rest", **LIMITS)
+    calm = fig2a_plan.timed(duration=rests.duration, **LIMITS)
+    assert rests.straight_delta_v == pytest.approx(calm.straight_delta_v, rel=1e-9)
+    assert rests.straight_delta_v < calm.delta_v < rests.delta_v
+    assert flight.straight_delta_v < flight.delta_v
