@@ -101,7 +101,8 @@ class Arrival:
         what = "meeting.velocity, meeting.angular_velocity" if floats else _TURN
         value = (twist if floats else twist[3:]).tolist()
         if np.linalg.norm(state.missed) > _MISSED * max(1.0, float(np.linalg.norm(twist))):
-            got = ", ".join(f"{each:.4g}" for each in (twist - state.missed)[0 if floats else 3 :])
+            nearest = np.round(twist - state.missed, 9)[0 if floats else 3 :] + 0.0  # no -0
+            got = ", ".join(f"{each:.4g}" for each in nearest)
             allowed = (
                 f"what the joints can give the frame there in the mode {self.motion.mode}, such as "
                 f"({got}), which comes nearest"
