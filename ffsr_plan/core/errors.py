@@ -298,6 +298,10 @@ class PathNotFound(PlanningError):
         attitude_missed: least angle by which a path to the goal missed the attitude that is
             demanded there [rad]; None without such a path.
         on_lattice: what a planner on a lattice said that found no path either; empty without one.
+        enclosed: `start` or `goal` where the trees from there stayed near it while the others
+            spread; empty otherwise.
+        spread: greatest distance of a node of the trees from start and goal from their roots, in
+            which 0.6 m count as a radian [m].
     """
 
     seconds: float
@@ -310,6 +314,8 @@ class PathNotFound(PlanningError):
     advice: tuple[str, ...] = ()
     attitude_missed: float | None = None
     on_lattice: str = ""
+    enclosed: str = ""
+    spread: tuple[float, float] = (0.0, 0.0)
 
     def message(self) -> str:
         """What was tried, what is in the way, and what may help; last, what the lattice said."""
@@ -326,6 +332,10 @@ class PathNotFound(PlanningError):
                 link, obstacle, depth, source = self.contact
                 text += f", with link '{link}' {-depth:.3g} m from "
                 text += obstacle_name(obstacle, source)
+        if self.enclosed:
+            own, other = self.spread if self.enclosed == "start" else self.spread[::-1]
+            text += f"; the {self.enclosed} may be enclosed: the trees from it came no farther "
+            text += f"than {own:.3g} m, the others {other:.3g} m"
         text += helping(self.advice)
         return f"{text}. On the lattice: {self.on_lattice}" if self.on_lattice else text
 

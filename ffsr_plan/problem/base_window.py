@@ -57,10 +57,29 @@ def default_window(robot: SpaceRobot, start: Array, goal: Array) -> Array:
     ends = np.stack([start[:3], goal])
     room = 0.5 * float(np.linalg.norm(ends[1] - ends[0])) + reach(robot)
     window = np.stack([ends.min(axis=0) - room, ends.max(axis=0) + room])
-    normal = _plane(robot, start[3:7])
+    normal = plane_of_joints(robot, start[3:7])
     if normal is not None and abs(ends[1, normal] - ends[0, normal]) <= _PARALLEL:
         window[:, normal] = ends[:, normal].min(), ends[:, normal].max()
     return frozen(window)
+
+
+def plane_of_joints(robot: SpaceRobot, attitude: Array) -> int | None:
+    """The axis of the world that all joint axes are parallel to, as its number; None without one.
+
+    Args:
+        robot: the robot.
+        attitude: (4,) of the base.
+    """
+    poses = robot.tree.poses(np.zeros((1, robot.nd)))
+    axes = (poses.rotations[0] @ robot.tree.axes[..., None])[1:, :, 0]
+    axes = np.abs(rotations.rotate(np.broadcast_to(attitude, (len(axes), 4)), axes))
+    for normal in range(3):
+        along = np.where(
+            robot.prismatic, np.sqrt(np.maximum(1.0 - axes[:, normal] ** 2, 0.0)), axes[:, normal]
+        )
+        if len(axes) and np.all(along >= 1.0 - _PARALLEL):
+            return normal
+    return None
 
 
 def reach(robot: SpaceRobot) -> float:
@@ -77,17 +96,3 @@ def reach(robot: SpaceRobot) -> float:
         farthest[link] = farthest[tree.parents[link]] + steps[link]
     sizes = np.linalg.norm(shapes.positions, axis=1) + np.linalg.norm(shapes.sizes, axis=1)
     return float(np.max(farthest[shapes.links] + sizes, initial=float(farthest.max())))
-
-
-def _plane(robot: SpaceRobot, attitude: Array) -> int | None:
-    """The axis of the world that all joint axes are parallel to, at the start; None without one."""
-    poses = robot.tree.poses(np.zeros((1, robot.nd)))
-    axes = (poses.rotations[0] @ robot.tree.axes[..., None])[1:, :, 0]
-    axes = np.abs(rotations.rotate(np.broadcast_to(attitude, (len(axes), 4)), axes))
-    for normal in range(3):
-        along = np.where(
-            robot.prismatic, np.sqrt(np.maximum(1.0 - axes[:, normal] ** 2, 0.0)), axes[:, normal]
-        )
-        if len(axes) and np.all(along >= 1.0 - _PARALLEL):
-            return normal
-    return None

@@ -371,10 +371,12 @@ class SpaceRobot:
         names = [self.joint_names[k] for k in wrong]
         ranges = [f"{self.lower[k]:g} to {self.upper[k]:g}" for k in wrong]
         values = [float(joint_values[k]) for k in wrong]
+        turned = np.max(np.abs(joint_values[outside & ~self.prismatic]), initial=0.0)
+        unit = " rad (angles are in radians, not in degrees)" if turned > 2.0 * np.pi else ""
         if len(wrong) == 1:
-            raise InvalidInput(f"{what} (joint {names[0]})", values[0], ranges[0])
+            raise InvalidInput(f"{what} (joint {names[0]})", values[0], ranges[0] + unit)
         limits = ", ".join(f"{name} {each}" for name, each in zip(names, ranges, strict=True))
-        raise InvalidInput(f"{what} (joints {', '.join(names)})", values, limits)
+        raise InvalidInput(f"{what} (joints {', '.join(names)})", values, limits + unit)
 
     def save(self, path: str | Path) -> None:
         """Write the URDF, and the SRDF if there is one to a `.srdf` file beside it.

@@ -10,11 +10,17 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import PathNotFound
 from ffsr_plan.dynamics.momentum import centers_of_mass
+from ffsr_plan.problem.base_window import plane_of_joints
+from ffsr_plan.problem.problem import Problem
 from ffsr_plan.tree_search.kernels.flight import fly
 from ffsr_plan.tree_search.kernels.search_arrays import JOINTS
 from ffsr_plan.tree_search.proven_paths import ProvenPaths
 from ffsr_plan.tree_search.restarts import Restarts, far_apart
 from ffsr_plan.tree_search.search_space import SearchSpace
+
+_SAME_PLANE = 1e-6  # [rad] of a turn out of a plane
+_NEAR = 0.5
+"""Trees of an enclosed end stay within this share of the way and of what the others went."""
 
 
 def path_not_found(
@@ -37,21 +43,30 @@ def path_not_found(
     """
     state, attitude, other = restarts.nearest()
     near = _in_the_way(space, state, attitude, other)
-    tried = restarts.meetings
-    nodes = tried.nodes + int(restarts.trees.counts[:2].sum())
-    meetings = tried.meetings + int(restarts.trees.counts[3])
+    tried = restarts.tally()
     contact = named(space.problem.obstacles, near) if np.isfinite(near.distance) else None
     return PathNotFound(
         seconds,
         tried.tries,
-        nodes,
-        meetings,
+        tried.nodes,
+        tried.meetings,
         proven.refused,
         far_apart(space, state, other),
         contact,
         _advice(space, interrupted),
         missed,
+        enclosed=_enclosed(space, tried.spread),
+        spread=tried.spread,
     )
+
+
+def _enclosed(space: SearchSpace, spread: tuple[float, float]) -> str:
+    """`start` or `goal` where only the trees from there stayed near, otherwise nothing."""
+    way = min(far_apart(space, space.start, goal) for goal in space.goals)
+    for name, own, other in zip(("start", "goal"), spread, spread[::-1], strict=True):
+        if 0.0 < own < _NEAR * min(way, other):
+            return name
+    return ""
 
 
 def _in_the_way(space: SearchSpace, state: Array, attitude: Array, other: Array) -> Nearest:
@@ -79,5 +94,17 @@ def _advice(space: SearchSpace, interrupted: bool) -> tuple[str, ...]:
         advice.append(f"a wider window than {low} to {high}")
     if problem.reach_attitude:
         advice.append("a goal attitude nearer to that of the start")
+        advice += _in_the_plane(problem)
     advice.append("another start or goal")
     return tuple(advice)
+
+
+def _in_the_plane(problem: Problem) -> tuple[str, ...]:
+    """Advice for a robot whose joints turn in one plane, and a goal attitude out of it."""
+    normal = plane_of_joints(problem.robot, problem.start[3:7])
+    turn = rotations.rotate(
+        problem.start[3:7], rotations.rotation_vector(problem.start[3:7], problem.goal[3:7])
+    )
+    if normal is None or np.linalg.norm(np.delete(turn, normal)) <= _SAME_PLANE:
+        return ()
+    return (f"a goal attitude turned about {'xyz'[normal]} alone, as all joints of the robot are",)

@@ -45,12 +45,15 @@ class Meetings(NamedTuple):
         nodes: of all trees.
         meetings: how often two trees met.
         failed: how often the way from there to the goal was not clear at the true attitude.
+        spread: greatest distance of a node from the root of its tree, of the trees from the start
+            and of those from the goals [m].
     """
 
     tries: int = 0
     nodes: int = 0
     meetings: int = 0
     failed: int = 0
+    spread: tuple[float, float] = (0.0, 0.0)
 
 
 class Restarts:
@@ -74,6 +77,7 @@ class Restarts:
             settings: of the trees.
         """
         self._space, self._random, self._settings = space, random_state(rng), settings
+        self._ends = (space.start[None], space.goals)
         self._boxes = (_box_about(space, settings.joint_range), space.arrays.box)
         self._left = 0  # checks that remain of the try at hand
         self.trees: Trees = self._planted()
@@ -109,6 +113,25 @@ class Restarts:
                 return self._path_to(found)
         return None
 
+    def tally(self) -> Meetings:
+        """What the trees of all tries did, with those of the last one."""
+        counts, known = self.trees.counts.tolist(), self.meetings
+        spread = (self._spread(0), self._spread(1))
+        return Meetings(
+            known.tries,
+            known.nodes + counts[0] + counts[1],
+            known.meetings + counts[3],
+            known.failed + counts[4],
+            (max(spread[0], known.spread[0]), max(spread[1], known.spread[1])),
+        )
+
+    def _spread(self, side: int) -> float:
+        """Greatest distance of a node of a tree from the nearest start or goal."""
+        nodes = self.trees.states[side, : self.trees.counts[side]]
+        weights, ends = self._space.arrays.weights[0], self._ends[side]
+        apart = [np.sum(((nodes - end) * weights) ** 2, axis=1) for end in ends]
+        return float(np.sqrt(np.max(np.min(apart, axis=0))))
+
     def nearest(self) -> tuple[Array, Array, Array]:
         """Where the trees of the last try came nearest to each other.
 
@@ -138,21 +161,12 @@ class Restarts:
 
     def _begin(self) -> None:
         """A new try."""
-        self._tally()
+        self.meetings = self.tally()
         tries = self.meetings.tries
         self._left = self._settings.first_checks * 2 ** (tries // len(self._settings.reaches))
         self._left = min(self._left, _MOST_CHECKS)
         self.trees = self._planted()
         self.meetings = self.meetings._replace(tries=tries + 1)
-
-    def _tally(self) -> None:
-        counts, known = self.trees.counts.tolist(), self.meetings
-        self.meetings = Meetings(
-            known.tries,
-            known.nodes + counts[0] + counts[1],
-            known.meetings + counts[3],
-            known.failed + counts[4],
-        )
 
     def _planted(self) -> Trees:
         """Trees that consist of their roots."""

@@ -33,7 +33,7 @@ class TreeSettings:
     """
 
     checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] | None = None
-    reaches: tuple[_Reach, ...] = (1.6, 4.0)
+    reaches: tuple[_Reach, ...] = (4.0, 1.6)
     joint_range: Annotated[float, Number(above=0.0, at_most=1e3)] | None = 2.5
     first_checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] = 40_000
     roots: Annotated[int, WholeNumber(at_least=1, at_most=1000)] = 12

@@ -19,6 +19,7 @@ import numpy as np
 
 import ffsr_plan as fp
 from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.speed.reference import Reference
 from benchmarks.studies.general.families import drawn
 from ffsr_plan.core import rotations
 
@@ -149,6 +150,11 @@ def longer(count: int, factor: int) -> list[list[str]]:
     return rows
 
 
+def reference() -> float:
+    """What Pinocchio and Coal take for all nodes of `fig2a` [ms]: how fast the machine is."""
+    return 1e3 * Reference(fp.load_scenario("fig2a")).seconds(15)
+
+
 def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -180,7 +186,8 @@ def main() -> None:
         "",
         "Problems without a lattice, planned by `TreePlanner` with its default settings, that is,",
         f"{CHECKS:,} configurations checked. `set`: those of `problems.json`, beside the program;",
-        "`new`: drawn by `families.py` for this table. Times are processor time of one thread.",
+        "`new`: drawn by `families.py` for this table. Times are processor time of one thread;",
+        f"`pin.computeDistances` for all nodes of `fig2a` takes {reference():.1f} ms here.",
         "",
         table(heads, rows_of(sets, args.samples)),
     ]
