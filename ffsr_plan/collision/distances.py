@@ -13,7 +13,7 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from ffsr_plan.collision.nearest_sphere_kernels import (
+from ffsr_plan.collision.nearest_obstacle_kernels import (
     nearest_pairs,
     nearest_pairs_from,
     nearest_to_each,

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import coal
 import numpy as np
 
-from ffsr_plan.collision.nearest_sphere_kernels import pairs_below
+from ffsr_plan.collision.nearest_obstacle_kernels import pairs_below
 from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.robots.collision_shapes import sharpen

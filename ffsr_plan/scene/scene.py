@@ -1,9 +1,10 @@
-"""Obstacles: spheres at rest in the world."""
+"""Obstacles at rest in the world: spheres, shapes of other kinds, and the outside of zones."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -21,16 +22,19 @@ from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.meshes import mesh_files
 from ffsr_plan.meshes.sphere_cover import cover
 from ffsr_plan.scene import sphere_files
-from ffsr_plan.scene.sphere_tree import SphereTree, sphere_tree
+from ffsr_plan.scene.keep_in_zones import ZONES, Zone
+from ffsr_plan.scene.obstacle_shapes import SHAPES, ObstacleShape
+from ffsr_plan.scene.obstacle_tree import ObstacleTree, obstacle_tree
 
 _LARGEST_SCALE = 1e9  # [m] per unit of a mesh
 
 
 @dataclass(frozen=True, eq=False, init=False)
 class Scene:
-    """Sphere obstacles. `scene + other` holds the spheres of both, those of `scene` first.
+    """Obstacles. `scene + other` holds the obstacles of both, those of `scene` first.
 
-    Two scenes are equal if they hold the same spheres in the same order.
+    Obstacles are numbered: the spheres, then the shapes, then the zones. Two scenes are equal if
+    they hold the same obstacles in the same order.
 
     Attributes:
         centers: (N, 3) centres in the world [m].
@@ -39,12 +43,18 @@ class Scene:
             zero if the spheres are the obstacles themselves.
         sources: what the spheres come from, in their order: pairs of a name, such as that of a
             mesh file, and a number of spheres. Errors name obstacles by them. Empty if unknown.
+        shapes: obstacles of other shapes.
+        keep_in: convex zones, each of which the whole robot stays in.
+        growth: distance by which the shapes are grown on all sides, and the zones shrunk [m].
     """
 
     centers: Array
     radii: Array
     excess: float = 0.0
     sources: tuple[tuple[str, int], ...] = ()
+    shapes: tuple[ObstacleShape, ...] = ()
+    keep_in: tuple[Zone, ...] = ()
+    growth: float = 0.0
 
     def __init__(
         self,
@@ -52,18 +62,24 @@ class Scene:
         radii: ArrayLike = (),
         excess: float = 0.0,
         sources: Sequence[tuple[str, int]] = (),
+        shapes: Sequence[ObstacleShape] = (),
+        keep_in: Sequence[Zone] = (),
+        growth: float = 0.0,
     ) -> None:
-        """Check the obstacles and make them read-only; N = 0 is an empty scene.
+        """Check the obstacles and make them read-only.
 
         Args:
             centers: (N, 3) centres in the world [m].
             radii: (N,) radii [m].
             excess: see the class.
             sources: see the class; the numbers sum to N.
+            shapes: `Box`, `Ball`, `Capsule`, `Cylinder`, `Ellipsoid` or `Hull`.
+            keep_in: `Box`, `Ball` or `HalfSpace`.
+            growth: see the class.
 
         Raises:
-            InvalidInput: shapes that do not fit; or a number that is not finite, or a radius <= 0,
-                with the index of the sphere.
+            InvalidInput: arrays that do not fit; a number that is not finite, or a radius <= 0,
+                with the index of the sphere; or something that is no shape or zone.
         """
         check_memory(
             "scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
@@ -73,9 +89,12 @@ class Scene:
         object.__setattr__(self, "radii", r)
         object.__setattr__(self, "excess", number("scene excess", excess, at_least=0.0))
         object.__setattr__(self, "sources", _checked_sources(sources, len(r)))
+        object.__setattr__(self, "shapes", _members("shapes", shapes, tuple(SHAPES.values())))
+        object.__setattr__(self, "keep_in", _members("keep_in", keep_in, ZONES))
+        object.__setattr__(self, "growth", number("scene growth", growth, at_least=0.0))
 
     def grown(self, by: float) -> Scene:
-        """The same spheres with larger radii; the names of their sources say so.
+        """The same obstacles, grown on all sides; the names of the spheres' sources say so.
 
         Args:
             by: what is added to all radii [m]; with 0 it is the same scene.
@@ -84,7 +103,10 @@ class Scene:
             return self
         names = self.sources or (("the scene", len(self.radii)),) * (len(self.radii) > 0)
         sources = [(f"{name}, grown by {by:g} m", count) for name, count in names]
-        return Scene(self.centers, self.radii + by, self.excess, sources)
+        return Scene(
+            self.centers, self.radii + by, self.excess, sources, self.shapes, self.keep_in,
+            self.growth + by,
+        )  # fmt: skip
 
     @classmethod
     def from_csv(cls, path: str | Path) -> Scene:
@@ -172,21 +194,24 @@ class Scene:
         Args:
             source: such as the name of a part.
         """
-        sources = [(source, len(self))] if len(self) else []
-        return Scene(self.centers, self.radii, self.excess, sources)
+        sources = [(source, len(self.radii))] if len(self.radii) else []
+        return Scene(
+            self.centers, self.radii, self.excess, sources, self.shapes, self.keep_in, self.growth
+        )
 
-    def source_of(self, sphere: int) -> str:
-        """What a sphere comes from; empty if that is unknown.
+    def source_of(self, obstacle: int) -> str:
+        """What a sphere comes from, or the name of a shape or zone; empty if that is unknown.
 
         Args:
-            sphere: its index.
+            obstacle: its number.
         """
         end = 0
         for name, count in self.sources:
             end += count
-            if sphere < end:
+            if obstacle < end:
                 return name
-        return ""
+        others, place = (*self.shapes, *self.keep_in), obstacle - len(self.radii)
+        return _title(others[place], place, self) if 0 <= place < len(others) else ""
 
     def to_csv(self, path: str | Path) -> None:
         """Write a table that `from_csv` reads again bit for bit; `excess` is not written.
@@ -200,9 +225,14 @@ class Scene:
         sphere_files.write_csv(path, self.centers, self.radii)
 
     @cached_property
-    def tree(self) -> SphereTree:
-        """The spheres as a tree, built at the first use."""
-        return sphere_tree(self.centers, self.radii)
+    def tree(self) -> ObstacleTree:
+        """The obstacles as a tree, built at the first use."""
+        return obstacle_tree(self.centers, self.radii, self.shapes, self.keep_in, self.growth)
+
+    @property
+    def is_closed_form(self) -> bool:
+        """Whether distances to all obstacles are short closed forms."""
+        return all(shape.is_box for shape in self.shapes)
 
     def __add__(self, other: Scene) -> Scene:
         if not isinstance(other, Scene):
@@ -212,6 +242,9 @@ class Scene:
             np.concatenate([self.radii, other.radii]),
             max(self.excess, other.excess),
             (*self._all_sources(), *other._all_sources()),
+            self.shapes + other.shapes,
+            self.keep_in + other.keep_in,
+            _common_growth(self, other),
         )
 
     def __eq__(self, other: object) -> bool:
@@ -223,29 +256,86 @@ class Scene:
         return hash(self._content())
 
     def _content(self) -> object:
-        return content((self.centers, self.radii, self.excess, self.sources))
+        return content(tuple(getattr(self, each.name) for each in fields(self)))
 
     def _all_sources(self) -> tuple[tuple[str, int], ...]:
-        return self.sources or ((("", len(self)),) if len(self) else ())
+        count = len(self.radii)
+        return self.sources or ((("", count),) if count else ())
 
     def __repr__(self) -> str:
-        extent = f", {self._extent()}" if len(self) else ""
-        return f"Scene({counted(len(self), 'sphere')}{extent})"
+        extent = self._extent()
+        return f"Scene({self._contents()}{extent and ', '}{extent})"
 
     def _repr_html_(self) -> str:
-        rows = {"spheres": str(len(self)), "extent": self._extent() if len(self) else "empty"}
+        rows = {"spheres": str(len(self.radii)), "extent": self._extent() or "empty"}
+        if self.shapes or self.keep_in:
+            rows = {"obstacles": self._contents(), **rows}
         if self.excess:
             rows["excess"] = f"{self.excess:g} m"
         return html_table("Scene", rows)
 
+    def _contents(self) -> str:
+        """How many obstacles of each kind there are."""
+        words = Counter(shape.word for shape in self.shapes)
+        parts = [counted(len(self.radii), "sphere")] * bool(len(self.radii) or not self.shapes)
+        parts += [f"{count} {_plural(word, count)}" for word, count in words.items()]
+        parts += [counted(len(self.keep_in), "zone")] * bool(self.keep_in)
+        return ", ".join(parts)
+
+    def bounds(self) -> Array:
+        """(2, 3) least and greatest coordinates of spheres and shapes [m]; (0, 3) without any."""
+        spheres = self.tree.spheres
+        if not len(spheres):
+            return np.zeros((0, 3))
+        low, high = spheres[:, :3] - spheres[:, 3:], spheres[:, :3] + spheres[:, 3:]
+        return np.stack([low.min(axis=0), high.max(axis=0)])
+
     def _extent(self) -> str:
-        low = (self.centers - self.radii[:, None]).min(axis=0)
-        high = (self.centers + self.radii[:, None]).max(axis=0)
+        """The box around spheres and shapes, in words."""
+        bounds = self.bounds()
+        if not len(bounds):
+            return ""
+        low, high = bounds
         sides = zip("xyz", low, high, strict=True)
         return ", ".join(f"{axis} {a:.4g} to {b:.4g} m" for axis, a, b in sides)
 
     def __len__(self) -> int:
-        return len(self.radii)
+        """Number of obstacles: spheres, shapes and zones."""
+        return len(self.radii) + len(self.shapes) + len(self.keep_in)
+
+
+def _members(what: str, given: object, kinds: tuple[type, ...]) -> tuple[Any, ...]:
+    """A sequence of objects of some classes."""
+    names = ", ".join(kind.__name__ for kind in kinds)
+    if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
+        raise InvalidInput(f"scene {what}", given, f"a list of {names}")
+    for k, each in enumerate(given):
+        if not isinstance(each, kinds):
+            raise InvalidInput(f"scene {what}.{k}", each, f"an object of {names}")
+    return tuple(given)
+
+
+def _title(member: ObstacleShape | Zone, place: int, scene: Scene) -> str:
+    """A shape or zone as messages name it."""
+    zone = place >= len(scene.shapes)
+    number = place - len(scene.shapes) if zone else place
+    field = f"keep_in.{number}" if zone else f"shapes.{number}"
+    text = f"{member.word} '{member.name}'" if member.name else f"{member.word} ({field})"
+    return f"the outside of {text}" if zone else text
+
+
+def _common_growth(one: Scene, other: Scene) -> float:
+    """The growth of the shapes and zones of two scenes, which is one for both."""
+    grown = [each.growth for each in (one, other) if each.shapes or each.keep_in]
+    if len(set(grown)) > 1:
+        raise InvalidInput("scene growth", grown, "one growth of all shapes and zones")
+    return grown[0] if grown else 0.0
+
+
+def _plural(word: str, count: int) -> str:
+    if count == 1:
+        return word
+    return word + ("es" if word.endswith("x") else "s")
 
 
 def _rows(values: object) -> int:

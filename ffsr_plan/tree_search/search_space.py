@@ -25,7 +25,7 @@ from ffsr_plan.tree_search.kernels.search_arrays import (
     SearchArrays,
 )
 
-_STACK = 64  # entries of a stack for `nearest_sphere`
+_STACK = 64  # entries of a stack for `nearest_obstacle`
 _LEAST_STEP = 0.008  # [m] of travel between two checks
 _LARGEST_TURN = 0.15  # [rad or m] of a joint in a step of the integration
 _JOINT_WEIGHT = 0.6  # metres that a radian counts in distances of the search

@@ -68,7 +68,7 @@ def test_kernels_release_the_gil():
 
 PROGRAM = """
 import os, sys
-from ffsr_plan.collision import nearest_sphere_kernels
+from ffsr_plan.collision import nearest_obstacle_kernels
 from ffsr_plan.collision.distances import ObstacleQuery
 assert "numba" not in sys.modules
 import numpy as np
@@ -78,7 +78,7 @@ scene = fp.Scene([[1, 0, 0], [2, 0, 0]], [0.1, 0.1])
 for _ in range(2):
     fp.clearance(robot, scene, robot.neutral())
 frame = np.zeros(15)
-nearest_sphere_kernels.distance_to_sphere(0, frame, np.zeros(3), scene.tree.spheres, 0)
+nearest_obstacle_kernels.distance_to_sphere(0, frame, np.zeros(3), scene.tree.spheres, 0)
 """
 
 

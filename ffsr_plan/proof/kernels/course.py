@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ffsr_plan.collision.nearest_sphere_kernels import (
+from ffsr_plan.collision.nearest_obstacle_kernels import (
     STACK_SIZE,
     distance_to_sphere,
-    nearest_sphere,
+    nearest_obstacle,
 )
 from ffsr_plan.core.arrays import Array, Flags, IntArray, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
@@ -248,7 +248,7 @@ def measure(
     for i in range(len(found)):
         kind, frame, near = course.shapes[i].kind, memory.frames[i], nearest[i]
         start = distance_to_sphere(kind, frame, shift, tree.spheres, near)
-        distance, near = nearest_sphere(tree, kind, frame, shift, start, near, stack, bounds)
+        distance, near = nearest_obstacle(tree, kind, frame, shift, start, near, stack, bounds)
         found[i], nearest[i] = distance, near
         least = min(least, distance)
     return least

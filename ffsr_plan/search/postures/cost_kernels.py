@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ffsr_plan.collision.nearest_sphere_kernels import (
+from ffsr_plan.collision.nearest_obstacle_kernels import (
     STACK_SIZE,
     distance_to_sphere,
-    nearest_sphere,
+    nearest_obstacle,
 )
 from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.core.kernels.compilation import kernel
@@ -191,7 +191,7 @@ def clearance_at(
         kind, shift = obstacles.kinds[g], workspace.shift
         # a sphere that was near gives a small distance to start with
         least = min(least, distance_to_sphere(kind, frame, shift, obstacles.spheres, nearest))
-        least, nearest = nearest_sphere(
+        least, nearest = nearest_obstacle(
             obstacles, kind, frame, shift, least, nearest, workspace.stack, workspace.bounds
         )
     workspace.found[0] = nearest

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.collision.nearest_sphere_kernels import nearest_pairs
+from ffsr_plan.collision.nearest_obstacle_kernels import nearest_pairs
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.core.rotations import IDENTITY, angle_between

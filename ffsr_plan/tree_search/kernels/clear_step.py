@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ffsr_plan.collision.nearest_sphere_kernels import nearest_sphere
+from ffsr_plan.collision.nearest_obstacle_kernels import nearest_obstacle
 from ffsr_plan.collision.shape_gap_kernels import least_gap
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
@@ -107,7 +107,7 @@ def obstacle_step(
         put_in_world(space, g, position, turn)
         speed = world_speed(shape, space.links[shape.link], base, space.robot[0].rate)
         far = margin + speed * step + _BEYOND
-        near, row = nearest_sphere(
+        near, row = nearest_obstacle(
             space.tree, shape.kind, space.frame, space.still, far, -1, space.stack, space.bounds
         )
         if row < 0:

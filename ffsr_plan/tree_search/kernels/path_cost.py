@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.collision.nearest_sphere_kernels import nearest_sphere
+from ffsr_plan.collision.nearest_obstacle_kernels import nearest_obstacle
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.quaternions import angle_of
@@ -86,7 +86,7 @@ def clearance_at(space: SearchArrays, state: Array, attitude: Array) -> float:
         return least
     for g in range(len(space.shapes)):
         put_in_world(space, g, position, setup.turn)
-        near, row = nearest_sphere(
+        near, row = nearest_obstacle(
             space.tree, space.shapes[g].kind, space.frame, space.still, least, -1, space.stack,
             space.bounds,
         )  # fmt: skip

@@ -87,8 +87,8 @@ class SearchArrays(NamedTuple):
         weights: (2, D) of the coordinates: in the distance of states, and in the length L.
         bars: (k, D + 2) states near which the proof refused an edge, distance within which a larger
             margin is kept, and that margin [m].
-        stack: (64,) memory for `nearest_sphere`.
-        bounds: (64,) memory for `nearest_sphere`.
+        stack: (64,) memory for `nearest_obstacle`.
+        bounds: (64,) memory for `nearest_obstacle`.
         frame: (15,) memory for the placement of a shape.
         still: (3,) zeros.
     """
