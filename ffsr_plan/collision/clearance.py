@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.collision.nearest_obstacle_kernels import nearest_pairs
+from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.robots.shape_arrays import ROUND
 from ffsr_plan.scene.scene import Scene
 
 
@@ -18,7 +22,7 @@ class Clearance(float):
 
     Attributes:
         link: name of the nearest link; empty in an empty scene.
-        obstacle: index of the nearest sphere in the scene; None in an empty scene.
+        obstacle: number of the nearest obstacle in the scene; None in an empty scene.
     """
 
     link: str
@@ -42,7 +46,7 @@ class Clearance(float):
 
 
 def clearance(robot: SpaceRobot, scene: Scene, q: ArrayLike) -> Clearance:
-    """Least distance from a link to a sphere at one configuration, by Coal.
+    """Least distance from a link to an obstacle at one configuration, by Coal.
 
     For many configurations, `ObstacleQuery(robot, scene).distances` of
     `ffsr_plan.collision.distances` takes (N, nq) at once.
@@ -66,3 +70,21 @@ def clearance(robot: SpaceRobot, scene: Scene, q: ArrayLike) -> Clearance:
     pair = ObstacleQuery(robot, scene).nearest(robot.check_configuration("q", q))
     obstacle = pair.obstacle if isinstance(pair.obstacle, int) else None
     return Clearance(pair.distance, pair.link, obstacle)
+
+
+def point_distances(scene: Scene, points: Array) -> Array:
+    """Signed distances of points from the nearest obstacle of those with closed forms.
+
+    Args:
+        scene: the obstacles; what has no closed form is left out.
+        points: (n, 3) world [m].
+
+    Returns:
+        (n,) [m], not less than the distances from all obstacles; infinite without any.
+    """
+    known = scene.closed_form_part
+    if not len(known):
+        return np.full(len(points), np.inf)
+    kinds, frames = frozen(np.array([ROUND])), np.zeros((1, 1, 15))
+    frames[..., [0, 4, 8]] = 1.0  # a ball without extent
+    return nearest_pairs(known.tree, kinds, frames, np.zeros(len(points), np.int64), points)[0]

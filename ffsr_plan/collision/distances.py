@@ -1,7 +1,7 @@
-"""Exact distances by Coal: link to sphere (Eqs. 7 and 9) and link to link.
+"""Exact distances by Coal: link to obstacle (Eqs. 7 and 9) and link to link.
 
-A search in the tree over the spheres finds the nearest pair of link and obstacle, and Coal measures
-its distance. All pairs are never listed, so that ten thousand spheres cost little more than ten.
+A search in the tree over the obstacles finds the nearest pair of link and obstacle, and Coal measures
+its distance. All pairs are never listed, so that ten thousand obstacles cost little more than ten.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from __future__ import annotations
 import time
 from typing import NamedTuple
 
-import coal
 import numpy as np
 import pinocchio as pin
 
+from ffsr_plan.collision.coal_measures import CoalMeasures
 from ffsr_plan.collision.nearest_obstacle_kernels import (
     nearest_pairs,
     nearest_pairs_from,
@@ -37,7 +37,7 @@ class Nearest(NamedTuple):
     Attributes:
         distance: [m], negative in penetration; infinite in an empty scene.
         link: name of the link; empty in an empty scene.
-        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
+        obstacle: number of the obstacle in the scene, or name of the other link; None in an empty
             scene.
     """
 
@@ -47,12 +47,12 @@ class Nearest(NamedTuple):
 
 
 class ObstacleQuery:
-    """Distances of the links to the spheres of a scene.
+    """Distances of the links to the obstacles of a scene.
 
     It contains scratch data: every thread needs its own.
 
     Attributes:
-        empty: whether the scene has no spheres or the robot no shapes.
+        empty: whether the scene has no obstacles or the robot no shapes.
         count: number of configurations whose clearance Coal has measured.
     """
 
@@ -67,20 +67,11 @@ class ObstacleQuery:
         self._robot, self._deadline = robot, deadline or Deadline()
         self._links = [robot.link_of(shape) for shape in robot.collision_model.geometryObjects]
         self._tree, self._shapes = scene.tree, robot.primitives
-        self._bounds_only = not bool(self._shapes.exact.all())
+        self._bounds_only = not (self._shapes.exact.all() and scene.is_closed_form)
         self.empty = len(scene) == 0 or len(self._shapes.kinds) == 0
         self.count = 0
         self._at_once = _AT_ONCE
-        self._ball = coal.Sphere(1.0)
-        self._measures = [
-            coal.ComputeDistance(shape.geometry, self._ball)
-            for shape in robot.collision_model.geometryObjects
-        ]
-        self._request = coal.DistanceRequest()
-        sharpen(self._request)
-        self._result = coal.DistanceResult()
-        self._shape_frame = coal.Transform3s.Identity()
-        self._ball_frame = coal.Transform3s.Identity()
+        self._measures = CoalMeasures(robot, scene)
 
     def distances(self, configurations: Array) -> Array:
         """Least distances of many configurations.
@@ -96,7 +87,7 @@ class ObstacleQuery:
         return self.distances_at(placed, np.arange(count), np.zeros((count, 3)))
 
     def nearest(self, q: Array) -> Nearest:
-        """The nearest pair of link and sphere.
+        """The nearest pair of link and obstacle.
 
         Args:
             q: (nq,) configuration.
@@ -104,7 +95,7 @@ class ObstacleQuery:
         return self.nearest_at(shape_placements(self._robot, q[None]), 0, np.zeros(3))
 
     def touching(self, q: Array) -> list[Nearest]:
-        """All pairs of a shape and a sphere that touch, at most 20 000 of them.
+        """All pairs of a shape and an obstacle that touch, at most 20 000 of them.
 
         Args:
             q: (nq,) configuration.
@@ -117,16 +108,13 @@ class ObstacleQuery:
         )
         chosen = np.argsort(bounds, kind="stable")[:_MOST_TOUCHING]
         shapes, rows = shapes[chosen], rows[chosen]
-        offsets = self._tree.spheres[rows, :3] - placed.positions[0][shapes]
-        local = np.einsum("kij,ki->kj", placed.rotations[0][shapes], offsets)
-        pairs = zip(
-            self._measured(shapes, rows, local).tolist(), shapes.tolist(), rows, strict=True
-        )
-        return [
-            Nearest(distance, self._links[shape], int(self._tree.order[row]))
-            for distance, shape, row in pairs
-            if distance <= 0.0
-        ]
+        found = []
+        for shape, row in zip(shapes.tolist(), rows.tolist(), strict=True):
+            own = placed.rotations[0][shape], placed.positions[0][shape]
+            distance, _ = self._measures.distance(shape, row, *own)
+            if distance <= 0.0:
+                found.append(Nearest(distance, self._links[shape], int(self._tree.order[row])))
+        return found
 
     def distances_at(self, placed: Placements, places: IntArray, shifts: Array) -> Array:
         """Least distances of many placements, each displaced.
@@ -142,7 +130,7 @@ class ObstacleQuery:
         return self._pairs(placed, places, shifts)[0]
 
     def closed_at(self, placed: Placements, places: IntArray, shifts: Array) -> Array:
-        """The same in closed form, without a query of Coal where no shape is a hull.
+        """The same in closed form, without a query of Coal where that is one for all pairs.
 
         Args:
             placed: K placements of the shapes.
@@ -185,7 +173,7 @@ class ObstacleQuery:
             shift: (3,) displacement of the whole robot [m].
 
         Returns:
-            (g,) distances [m]; for a hull, that of the box around it, a lower bound.
+            (g,) distances [m]; where a body only lies in its box, lower bounds.
         """
         if self.empty:
             return np.full(len(self._shapes.kinds), np.inf)
@@ -195,7 +183,7 @@ class ObstacleQuery:
     def _pairs(
         self, placed: Placements, places: IntArray, shifts: Array
     ) -> tuple[Array, IntArray, IntArray]:
-        """(n,) Coal's least distance, (n,) shape and (n,) row of the tree's spheres."""
+        """(n,) Coal's least distance, (n,) shape and (n,) row of the obstacle."""
         if self.empty:
             none = np.zeros(len(places), dtype=np.int64)
             return np.full(len(places), np.inf), none, none
@@ -217,7 +205,7 @@ class ObstacleQuery:
             if len(shape):
                 which, row = int(shape[-1]), int(sphere[-1])
             self.count += len(shape)
-            least = self._measured(shape, sphere, local)
+            least = self._measured(placed, (places[some], shifts[some]), shape, sphere, local)
             if self._bounds_only:
                 self._refine(placed, places[some], shifts[some], least, shape, sphere)
             found.append((least, shape, sphere))
@@ -246,23 +234,29 @@ class ObstacleQuery:
             pair = self._nearest_hull(placed, place, shifts[k], least[k], shape[k], sphere[k])
             least[k], shape[k], sphere[k] = pair
 
-    def _measured(self, shape: IntArray, sphere: IntArray, local: Array) -> Array:
-        """(n,) Coal's distances of shapes (n,) to spheres (n,) centred at `local` (n, 3).
+    def _measured(
+        self,
+        placed: Placements,
+        where: tuple[IntArray, Array],
+        shape: IntArray,
+        row: IntArray,
+        local: Array,
+    ) -> Array:
+        """(n,) Coal's distances of shapes (n,) to obstacles (n,).
 
-        Centres are in the shape's frame, so that one ball and one placement serve all pairs.
+        Spheres are centred at `local` (n, 3) in the frames of the shapes. The places (n,) and
+        shifts (n, 3) in `where` are those of the robot.
         """
-        ball, request, result = self._ball, self._request, self._result
-        shape_frame, ball_frame = self._shape_frame, self._ball_frame
-        measures = [self._measures[i] for i in shape.tolist()]
-        radii = self._tree.spheres[sphere, 3].tolist()
-        distances, present = [], None
-        for measure, radius, center in zip(measures, radii, local, strict=True):
-            if radius != present:
-                ball.radius = present = radius
-            ball_frame.setTranslation(center)
-            result.clear()  # a new one would take longer than the measurement
-            distances.append(measure(shape_frame, ball_frame, request, result))
-        return np.array(distances)
+        measures, tree = self._measures, self._tree
+        if not len(tree.solid) and not len(tree.planes) and not len(tree.balls):
+            radii = tree.spheres[row, 3].tolist()
+            return np.array(measures.to_spheres(shape.tolist(), radii, local))
+        found = np.empty(len(shape))
+        for k, (place, shift, i) in enumerate(zip(*where, shape, strict=True)):
+            position = placed.positions[place, i] + shift
+            own = placed.rotations[place, i], position
+            found[k], _ = measures.distance(int(i), int(row[k]), *own)
+        return found
 
     def _nearest_hull(
         self,
@@ -273,7 +267,7 @@ class ObstacleQuery:
         shape: int,
         sphere: int,
     ) -> tuple[float, int, int]:
-        """The nearest pair if some shapes are hulls, for which the search has lower bounds only.
+        """The nearest pair if the search has lower bounds only, as it has for hulls.
 
         All pairs with a bound below `least`, the measured distance of one pair, are measured in the
         order of their bounds.
@@ -286,10 +280,8 @@ class ObstacleQuery:
             if bounds[k] >= best[0]:
                 break
             i, row = int(shapes[k]), int(rows[k])
-            offset = self._tree.spheres[row, :3] - positions[i] - shift
-            local = (rotations[i].T @ offset)[None]
-            distance = self._measured(shapes[k : k + 1], rows[k : k + 1], local)
-            best = min(best, (float(distance[0]), i, row))
+            distance, _ = self._measures.distance(i, row, rotations[i], positions[i] + shift)
+            best = min(best, (distance, i, row))
         return best
 
 

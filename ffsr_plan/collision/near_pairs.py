@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import coal
 import numpy as np
 
+from ffsr_plan.collision.coal_measures import CoalMeasures
 from ffsr_plan.collision.nearest_obstacle_kernels import pairs_below
 from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.robots.collision_shapes import sharpen
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
@@ -36,7 +35,7 @@ class PairGaps(NamedTuple):
 
 
 class NearPairs:
-    """Near pairs of the links of a robot and the spheres of a scene.
+    """Near pairs of the links of a robot and the obstacles of a scene.
 
     It contains scratch data: every thread needs its own.
 
@@ -58,14 +57,7 @@ class NearPairs:
             robot.primitives.kinds,
         )
         self._empty = len(scene) == 0 or len(self._kinds) == 0
-        self._ball, self._request = coal.Sphere(1.0), coal.DistanceRequest()
-        sharpen(self._request)
-        self._result = coal.DistanceResult()
-        self._frames = coal.Transform3s.Identity(), coal.Transform3s.Identity()
-        self._measures = [
-            coal.ComputeDistance(shape.geometry, self._ball)
-            for shape in robot.collision_model.geometryObjects
-        ]
+        self._measures = CoalMeasures(robot, scene)
         self.count = 0
 
     def at(self, placed: Placements, place: int, shift: Array, limit: float) -> PairGaps:
@@ -84,25 +76,14 @@ class NearPairs:
         if self._empty:
             return PairGaps(np.zeros(0), np.zeros((0, 3)))
         self.count += 1
-        frames, spheres = placed.frames[place], self._tree.spheres
+        frames = placed.frames[place]
         bounds, shapes, rows = pairs_below(self._tree, self._kinds, frames, shift, limit)
         chosen = np.argsort(bounds, kind="stable")[:_MOST_PAIRS]
         distances, gradients = np.empty(len(chosen)), np.empty((len(chosen), 3))
         rotations, positions = placed.rotations[place], placed.positions[place] + shift
         for k, pair in enumerate(chosen.tolist()):
             shape, row = int(shapes[pair]), int(rows[pair])
-            turned = rotations[shape]
-            center = turned.T @ (spheres[row, :3] - positions[shape])
-            distances[k], normal = self._measured(shape, float(spheres[row, 3]), center)
-            gradients[k] = -turned @ normal
+            own = rotations[shape], positions[shape]
+            distances[k], gradients[k] = self._measures.distance(shape, row, *own)
         order = np.argsort(distances, kind="stable")
         return PairGaps(distances[order], gradients[order])
-
-    def _measured(self, shape: int, radius: float, center: Array) -> tuple[float, Array]:
-        """Distance of a shape and a ball at a place in its frame, and its gradient by the ball."""
-        shape_frame, ball_frame = self._frames
-        self._ball.radius = radius
-        ball_frame.setTranslation(center)
-        self._result.clear()
-        distance = self._measures[shape](shape_frame, ball_frame, self._request, self._result)
-        return float(distance), np.asarray(self._result.normal)

@@ -351,7 +351,7 @@ class Problem:
         return [
             ("robot", self.robot.name),
             ("mode", str(self.mode)),
-            ("obstacles", counted(len(self.scene), "sphere")),
+            ("obstacles", counted(len(self.scene), "obstacle")),
             ("lattice", "none" if self.lattice is None else self.lattice.summary),
             ("delta", f"{self.delta:g}"),
             ("length_unit", f"{self.length_unit:g} m"),

@@ -76,9 +76,9 @@ class Prover:
         self._corners = shape_placements(nominal.robot, nominal.configurations())
         self.speeds = self._travel.speeds
         self.rounding = ROUNDING + self._travel.attitude_error
-        self._exact = bool(nominal.robot.primitives.exact.all())
+        self._exact = bool(nominal.robot.primitives.exact.all()) and scene.is_closed_form
         if not self._exact:
-            largest = float(np.max(scene.radii, initial=0.0))
+            largest = float(np.max(scene.tree.spheres[:, 3], initial=0.0))
             self.rounding += _ITERATION_ERROR + _RELATIVE_ITERATION_ERROR * largest
 
     @property

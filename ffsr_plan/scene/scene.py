@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -233,6 +233,13 @@ class Scene:
     def is_closed_form(self) -> bool:
         """Whether distances to all obstacles are short closed forms."""
         return all(shape.is_box for shape in self.shapes)
+
+    @cached_property
+    def closed_form_part(self) -> Scene:
+        """The scene without obstacles to which distances are not short closed forms."""
+        return self if self.is_closed_form else replace(
+            self, shapes=[shape for shape in self.shapes if shape.is_box]
+        )  # fmt: skip
 
     def __add__(self, other: Scene) -> Scene:
         if not isinstance(other, Scene):

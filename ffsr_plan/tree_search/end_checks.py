@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ffsr_plan.collision.clearance import point_distances
 from ffsr_plan.collision.contacts import contacts, goal_in_collision, start_in_collision
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core import rotations
@@ -95,5 +96,4 @@ def _touches_at_any_attitude(problem: Problem, goal: Array) -> bool:
     beyond = np.maximum(local[:, 2] - shapes.sizes[:, 1], 0.0)
     ways = np.sqrt(local[:, 0] ** 2 + local[:, 1] ** 2 + beyond**2)
     depths = np.where(shapes.exact & ~box, shapes.sizes[:, 0] - ways, depths)
-    nearest = np.linalg.norm(scene.centers - goal[:3], axis=1) - scene.radii
-    return bool(np.max(depths) >= np.min(nearest))
+    return bool(np.max(depths) >= point_distances(scene, goal[None, :3])[0])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ffsr_plan.collision.nearest_obstacle_kernels import (
     STACK_SIZE,
-    distance_to_sphere,
+    distance_to_obstacle,
     nearest_obstacle,
 )
 from ffsr_plan.core.arrays import Array, Flags, IntArray, Records, records
@@ -27,7 +27,7 @@ from ffsr_plan.proof.kernels.travel import (
     bound_travel,
     scratch_for,
 )
-from ffsr_plan.scene.sphere_tree import SphereTree
+from ffsr_plan.scene.obstacle_tree import ObstacleTree
 
 SHAPE = np.dtype(
     [
@@ -74,7 +74,7 @@ class Course(NamedTuple):
     bodies: Records
     shapes: Records
     points: Records
-    tree: SphereTree
+    tree: ObstacleTree
     base: BaseMotion
     starts: Array
     partial: Partial
@@ -237,7 +237,8 @@ def measure(
         time: on it, in [0, 1].
         shift: (3,) offset of the base there [m].
         memory: scratch memory.
-        found: (g,) distances, filled in [m]; for a hull, those of the box around it.
+        found: (g,) distances, filled in [m]; where a body only lies in its
+            box, lower bounds.
 
     Returns:
         The least of them [m].
@@ -247,7 +248,7 @@ def measure(
     tree, stack, bounds = course.tree, memory.stack, memory.bounds
     for i in range(len(found)):
         kind, frame, near = course.shapes[i].kind, memory.frames[i], nearest[i]
-        start = distance_to_sphere(kind, frame, shift, tree.spheres, near)
+        start = distance_to_obstacle(tree, kind, frame, shift, near, np.inf)
         distance, near = nearest_obstacle(tree, kind, frame, shift, start, near, stack, bounds)
         found[i], nearest[i] = distance, near
         least = min(least, distance)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ffsr_plan.collision.nearest_obstacle_kernels import (
     STACK_SIZE,
-    distance_to_sphere,
+    distance_to_obstacle,
     nearest_obstacle,
 )
 from ffsr_plan.core.arrays import Array, Flags, IntArray
@@ -30,11 +30,15 @@ it."""
 
 
 class Obstacles(NamedTuple):
-    """The scene's `SphereTree`, and the kinds of the shapes that are held against it."""
+    """The scene's `ObstacleTree`, and the kinds of the shapes that are held against it."""
 
     nodes: Array
     children: NDArray[np.int32]
     spheres: Array
+    solid: NDArray[np.int32]
+    solids: Array
+    planes: Array
+    balls: Array
     kinds: IntArray
     """(g,) of `Primitives`."""
 
@@ -106,7 +110,7 @@ class Workspace(NamedTuple):
     stack: NDArray[np.int32]
     bounds: Array
     found: IntArray
-    """(1,) the nearest sphere of the search before, a row of `Obstacles.spheres`."""
+    """(1,) the nearest obstacle of the search before, its row."""
 
 
 class CostedPath(NamedTuple):
@@ -148,7 +152,9 @@ def new_workspace() -> Workspace:
 @kernel
 def is_free(grid: PostureGrid) -> bool:
     """Whether there are no obstacles, or no shapes that could touch them."""
-    return len(grid.obstacles.spheres) == 0 or len(grid.obstacles.kinds) == 0
+    around = grid.obstacles
+    some = len(around.spheres) + len(around.planes) + len(around.balls)
+    return some == 0 or len(around.kinds) == 0
 
 
 @kernel
@@ -189,8 +195,8 @@ def clearance_at(
             )
             frame[12 + a] = own[12 + a]
         kind, shift = obstacles.kinds[g], workspace.shift
-        # a sphere that was near gives a small distance to start with
-        least = min(least, distance_to_sphere(kind, frame, shift, obstacles.spheres, nearest))
+        # an obstacle that was near gives a small distance to start with
+        least = min(least, distance_to_obstacle(obstacles, kind, frame, shift, nearest, least))
         least, nearest = nearest_obstacle(
             obstacles, kind, frame, shift, least, nearest, workspace.stack, workspace.bounds
         )

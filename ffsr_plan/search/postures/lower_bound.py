@@ -11,15 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.collision.nearest_obstacle_kernels import nearest_pairs
-from ffsr_plan.core.arrays import Array, frozen
+from ffsr_plan.collision.clearance import point_distances
 from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.core.rotations import IDENTITY, angle_between
 from ffsr_plan.lattice.optimum import straight_bound
 from ffsr_plan.lattice.shortest_path import LazyShortestPath
 from ffsr_plan.problem.objective import nearness
-from ffsr_plan.robots.shape_arrays import ROUND
-from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 
 
@@ -40,7 +37,7 @@ def _bound(lattice: PostureLattice) -> float:
         apart = np.empty((m + 1, count))
         for own, points in zip(apart, places, strict=True):
             lattice.deadline.check()
-            own[:] = _point_clearances(problem.obstacles, points)
+            own[:] = point_distances(problem.obstacles, points)
     nodes = nearness(problem, apart)  # at least that of `clearance_cap`
     nodes[[0, -1]] = 0.0
     status = np.zeros((m, count, count), dtype=np.int8)
@@ -62,13 +59,6 @@ def origin_is_inside(lattice: PostureLattice) -> bool:
         if shapes.kinds[k] == 0 and np.linalg.norm(beyond) <= size[0]:
             return True
     return False
-
-
-def _point_clearances(scene: Scene, points: Array) -> Array:
-    """(n,) signed distances of points (n, 3) from the nearest sphere [m]."""
-    kinds, frames = frozen(np.array([ROUND])), np.zeros((1, 1, 15))
-    frames[..., [0, 4, 8]] = 1.0  # a ball without extent
-    return nearest_pairs(scene.tree, kinds, frames, np.zeros(len(points), np.int64), points)[0]
 
 
 def _rotation_bound(lattice: PostureLattice) -> float:

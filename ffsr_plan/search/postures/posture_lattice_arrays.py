@@ -29,9 +29,7 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
     tree = problem.obstacles.tree
     return PostureGrid(
         obstacles=Obstacles(
-            np.array(tree.nodes),
-            tree.children.copy(),
-            tree.spheres.copy(),
+            *(np.array(getattr(tree, name)) for name in Obstacles._fields[:-1]),
             np.array(problem.robot.primitives.kinds),
         ),
         rows=lattice.rows,

@@ -57,7 +57,7 @@ def fly(
             locate(space, begin, end, time, quat, position, base)
             place_shapes(space)
             step = link_step(space, setup.self_margin + extra, max(left, _END))
-            if step > 0.0 and len(space.tree.spheres) > 0:
+            if step > 0.0 and len(space.tree.order) > 0:
                 step = obstacle_step(space, position, setup.turn, base, margin, step)
             if step < 0.0:
                 return flown

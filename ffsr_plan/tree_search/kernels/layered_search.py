@@ -166,7 +166,7 @@ def edge_costs(space: SearchArrays, memory: PathMemory, last: int, states: Array
     """
     weights, setup = space.weights, space.setup[0]
     steps = np.empty((LAYERS + 1, LANES, LANES))
-    counts = setup.nearness_weight > 0.0 and len(space.tree.spheres) > 0
+    counts = setup.nearness_weight > 0.0 and len(space.tree.order) > 0
     share = setup.nearness_weight * STATIONS / LAYERS
     for layer in range(LAYERS + 1):
         tails = 1 if layer == 0 else LANES

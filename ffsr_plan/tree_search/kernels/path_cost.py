@@ -40,7 +40,7 @@ def path_cost(space: SearchArrays, states: Array, attitudes: Array, last: int) -
     if setup.missed_weight > 0.0:
         missed = angle_of(attitudes[last], setup.goal)
         cost += setup.missed_weight * max(0.0, missed - SLACK)
-    if setup.nearness_weight > 0.0 and len(space.tree.spheres) > 0:
+    if setup.nearness_weight > 0.0 and len(space.tree.order) > 0:
         cost += setup.nearness_weight * nearness(space, states, attitudes, last)
     return cost
 
@@ -82,7 +82,7 @@ def clearance_at(space: SearchArrays, state: Array, attitude: Array) -> float:
     locate(space, state, state, 0.0, attitude, position, base)
     place_shapes(space)
     least = setup.cap
-    if len(space.tree.spheres) == 0:
+    if len(space.tree.order) == 0:
         return least
     for g in range(len(space.shapes)):
         put_in_world(space, g, position, setup.turn)

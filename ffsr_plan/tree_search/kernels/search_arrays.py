@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ffsr_plan.core.arrays import Array, IntArray, Records
-from ffsr_plan.scene.sphere_tree import SphereTree
+from ffsr_plan.scene.obstacle_tree import ObstacleTree
 
 Record = Any
 TURN, JOINTS = 3, 4
@@ -99,7 +99,7 @@ class SearchArrays(NamedTuple):
     joints: Array
     shapes: Records
     pairs: IntArray
-    tree: SphereTree
+    tree: ObstacleTree
     setup: Records
     box: Array
     weights: Array
