@@ -1,7 +1,8 @@
 """Exact distances by Coal: link to obstacle (Eqs. 7 and 9) and link to link.
 
-A search in the tree over the obstacles finds the nearest pair of link and obstacle, and Coal measures
-its distance. All pairs are never listed, so that ten thousand obstacles cost little more than ten.
+A search in the tree over the obstacles finds the nearest pair of link and obstacle, and Coal
+measures its distance. All pairs are never listed, so that ten thousand obstacles cost little more
+than ten.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Compiled search for the obstacle nearest to the robot's shapes.
 
 The robot's shapes are those of `shape_arrays`, obstacles those of an `ObstacleTree`. Distances are
-signed: negative by the depth of penetration. Every body is a box widened by a radius, or lies in it.
+signed: negative by the depth of penetration. Every body is a box widened by a radius, or lies in
+one.
 """
 
 from __future__ import annotations
@@ -311,7 +312,9 @@ def nearest_to_each(tree: ObstacleTree, kinds: IntArray, frames: Array, shift: A
     row = 0
     for i in range(len(kinds)):
         start = distance_to_obstacle(tree, kinds[i], frames[i], shift, row, np.inf)
-        least[i], row = nearest_obstacle(tree, kinds[i], frames[i], shift, start, row, stack, bounds)
+        least[i], row = nearest_obstacle(
+            tree, kinds[i], frames[i], shift, start, row, stack, bounds
+        )
     return least
 
 

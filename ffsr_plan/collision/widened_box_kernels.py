@@ -2,8 +2,8 @@
 
 Along any direction n, the gap between the shadows of two convex bodies on n is at most their signed
 distance, and the largest gap is that distance. Where the boxes overlap, n is a normal of a side or
-perpendicular to an edge of each (the separating axes of `shape_gap_kernels`). Where they do not, the
-nearest points are a corner and a point of the other box, or points of two edges: those that lie
+perpendicular to an edge of each (the separating axes of `shape_gap_kernels`). Where they do not,
+the nearest points are a corner and a point of the other box, or points of two edges: those that lie
 farthest along the common perpendicular of both.
 """
 

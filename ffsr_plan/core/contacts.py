@@ -11,15 +11,28 @@ TOUCHING = 1e-9
 _MOST_NAMED = 12  # obstacles or contacts in one message
 
 
+class ShapeName(str):
+    """The name of an obstacle that is no sphere, complete by itself: box 'panel'."""
+
+    __slots__ = ()
+
+
+class ZoneName(ShapeName):
+    """The name of a zone that the robot has to stay in, and whose outside is an obstacle."""
+
+    __slots__ = ()
+
+
 class Contact(NamedTuple):
     """Two bodies that touch, or come too close.
 
     Attributes:
         link: name of the link.
-        obstacle: index of the sphere in the scene, or name of the other link; None in an empty
+        obstacle: number of the obstacle in the scene, or name of the other link; None in an empty
             scene.
         depth: penetration depth [m], zero in contact, negative apart.
-        source: what the sphere comes from, such as the name of a mesh; empty where that is unknown.
+        source: what a sphere comes from, such as the name of a mesh, empty where that is unknown;
+            a `ShapeName` of other obstacles.
     """
 
     link: str
@@ -39,17 +52,32 @@ def approach(distance: float) -> str:
     return "touches" if distance > -TOUCHING else f"is {-distance:.4g} m inside"
 
 
+def encounter(distance: float, obstacle: int | str | None, source: str = "") -> str:
+    """How near something comes to an obstacle.
+
+    Args:
+        distance: [m], negative in penetration.
+        obstacle: see `obstacle_name`.
+        source: see `obstacle_name`.
+    """
+    if isinstance(source, ZoneName) and distance <= -TOUCHING:
+        return f"is {-distance:.4g} m outside of {source}"
+    return f"{approach(distance)} {obstacle_name(obstacle, source)}"
+
+
 def obstacle_name(obstacle: int | str | None, source: str = "") -> str:
     """An obstacle as messages name it.
 
     Args:
-        obstacle: index of a sphere, name of a link, or None.
-        source: what the sphere comes from, empty if that is unknown.
+        obstacle: number of an obstacle, name of a link, or None.
+        source: of the obstacle, as in `Contact`.
     """
     if obstacle is None:
         return "no obstacle"
     if isinstance(obstacle, str):
         return f"link '{obstacle}'"
+    if isinstance(source, ShapeName):
+        return f"the boundary of {source}" if isinstance(source, ZoneName) else str(source)
     return f"{source} (sphere {obstacle})" if source else f"obstacle {obstacle}"
 
 
@@ -66,19 +94,19 @@ def contact_list(contacts: tuple[Contact, ...]) -> str:
     texts = []
     for (link, _), group in groups.items():
         more = f" and {counted(len(group) - 1, 'sphere')} more of it" if len(group) > 1 else ""
-        name = obstacle_name(group[0].obstacle, group[0].source)
-        texts.append(f"link '{link}' {approach(-group[0].depth)} {name}{more}")
+        first = group[0]
+        texts.append(f"link '{link}' {encounter(-first.depth, first.obstacle, first.source)}{more}")
     if len(texts) > _MOST_NAMED:
         texts[_MOST_NAMED:] = [f"{len(texts) - _MOST_NAMED} more"]
     return "; ".join(texts)
 
 
 def closing_obstacles(contacts: tuple[Contact, ...], spheres: list[int]) -> str:
-    """Spheres by what they come from, and the links that meet them.
+    """Obstacles by what they come from, and the links that meet them.
 
     Args:
         contacts: give the sources and the links.
-        spheres: indices in the scene; the text is empty if there are none.
+        spheres: numbers of obstacles in the scene; the text is empty if there are none.
     """
     by_source: dict[str, list[int]] = {}
     sources = {contact.obstacle: contact.source for contact in contacts}
@@ -91,7 +119,8 @@ def closing_obstacles(contacts: tuple[Contact, ...], spheres: list[int]) -> str:
         more = len(members) - _MOST_NAMED
         text = f"{word}{'s' if len(members) > 1 else ''} {listed}"
         text += f" and {more} more" if more > 0 else ""
-        parts.append(f"{source} ({text})" if source else text)
+        whole = isinstance(source, ShapeName)
+        parts.append(str(source) if whole else f"{source} ({text})" if source else text)
     links = sorted({f"'{c.link}'" for c in contacts if isinstance(c.obstacle, int)})
     verb = "link {} meets" if len(links) == 1 else "links {} meet"
     meet = f", which {verb.format(', '.join(links))}" if links else ""

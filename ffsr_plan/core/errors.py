@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 
 from ffsr_plan.core.contacts import (
     Contact,
-    approach,
     closing_obstacles,
     contact_list,
+    encounter,
     obstacle_name,
 )
 from ffsr_plan.core.formatting import on_one_line, shortened
@@ -252,8 +252,8 @@ class UnprovenPath(PlanningError):
         """Where the proof fails, and which settings may help."""
         return (
             f"no path was found that could be proven free: between layers {self.layer - 1} and "
-            f"{self.layer} of {self.divisions}, link '{self.link}' {approach(self.distance)} "
-            f"{obstacle_name(self.obstacle, self.source)}"
+            f"{self.layer} of {self.divisions}, link '{self.link}' "
+            f"{encounter(self.distance, self.obstacle, self.source)}"
             + helping(self.advice or ("other posture axes",))
         )
 
@@ -277,7 +277,7 @@ class UnprovenCurve(PlanningError):
         link, obstacle, depth, source = self.contact
         return (
             f"no smooth curve could be proven free: on edge {self.edge} of {self.edges}, link "
-            f"'{link}' {approach(-depth)} {obstacle_name(obstacle, source)}; what may help: a plan "
+            f"'{link}' {encounter(-depth, obstacle, source)}; what may help: a plan "
             "with more clearance, by min_clearance or a larger delta"
         )
 

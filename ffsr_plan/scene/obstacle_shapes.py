@@ -1,4 +1,4 @@
-"""Convex obstacles of every shape, placed in the world: boxes, capsules, cylinders, hulls and so on.
+"""Convex obstacles of every shape, placed in the world: boxes, capsules, cylinders, hulls.
 
 Each lies in a box along its own axes that is widened by a radius, its skin. Of boxes, balls and
 capsules that is the shape itself; of the others it is a box around them.
@@ -85,9 +85,7 @@ class Points(Rule):
         try:
             return frozen(mesh_files.hull(points, "", "")[0])
         except InvalidInput:
-            raise InvalidInput(
-                what, points.tolist(), "points that do not lie in a plane"
-            ) from None
+            raise InvalidInput(what, points.tolist(), "points that do not lie in a plane") from None
 
     def json_schema(self) -> dict[str, Any]:
         """See `Rule.json_schema`."""

@@ -1,8 +1,8 @@
 """Obstacles as arrays for the compiled search: a tree of spheres around them, shapes, and zones.
 
 A row of the tree is a sphere, or the sphere around a shape. Every shape is a box along its own axes
-that is widened by a radius: exactly, or as a box around it. Zones are kept as planes and balls; they
-have no end and are looked at one by one.
+that is widened by a radius: exactly, or as a box around it. Zones are kept as planes and balls;
+they have no end and are looked at one by one.
 """
 
 from __future__ import annotations
@@ -66,7 +66,10 @@ def obstacle_tree(
         zones: zones that the robot stays in.
         growth: distance by which shapes are grown and zones shrunk [m].
     """
-    solids, count = np.array([_solid(shape, growth) for shape in shapes]).reshape(-1, 16), len(radii)
+    solids, count = (
+        np.array([_solid(shape, growth) for shape in shapes]).reshape(-1, 16),
+        len(radii),
+    )
     middles, reaches = solids[:, 9:12], np.linalg.norm(solids[:, 12:15], axis=1) + solids[:, 15]
     tree = sphere_tree(np.vstack([centers, middles]), np.concatenate([radii, reaches]))
     solid = np.where(tree.order < count, -1, tree.order - count) if len(shapes) else np.zeros(0)

@@ -16,6 +16,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, content
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, truth, whole_number
 from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.contacts import ShapeName, ZoneName
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
@@ -237,9 +238,9 @@ class Scene:
     @cached_property
     def closed_form_part(self) -> Scene:
         """The scene without obstacles to which distances are not short closed forms."""
-        return self if self.is_closed_form else replace(
-            self, shapes=[shape for shape in self.shapes if shape.is_box]
-        )  # fmt: skip
+        if self.is_closed_form:
+            return self
+        return replace(self, shapes=tuple(shape for shape in self.shapes if shape.is_box))
 
     def __add__(self, other: Scene) -> Scene:
         if not isinstance(other, Scene):
@@ -328,7 +329,7 @@ def _title(member: ObstacleShape | Zone, place: int, scene: Scene) -> str:
     number = place - len(scene.shapes) if zone else place
     field = f"keep_in.{number}" if zone else f"shapes.{number}"
     text = f"{member.word} '{member.name}'" if member.name else f"{member.word} ({field})"
-    return f"the outside of {text}" if zone else text
+    return ZoneName(text) if zone else ShapeName(text)
 
 
 def _common_growth(one: Scene, other: Scene) -> float:

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.collision.clearance import point_distances
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.core.rotations import IDENTITY, angle_between
 from ffsr_plan.lattice.optimum import straight_bound

@@ -29,7 +29,13 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
     tree = problem.obstacles.tree
     return PostureGrid(
         obstacles=Obstacles(
-            *(np.array(getattr(tree, name)) for name in Obstacles._fields[:-1]),
+            np.array(tree.nodes),
+            tree.children.copy(),
+            tree.spheres.copy(),
+            tree.solid.copy(),
+            np.array(tree.solids),
+            np.array(tree.planes),
+            np.array(tree.balls),
             np.array(problem.robot.primitives.kinds),
         ),
         rows=lattice.rows,
