@@ -76,7 +76,7 @@ def test_no_order_of_many_spheres_makes_the_tree_deep(name):
     """The stack of a search has 64 entries; a tree of halves over 100 000 has 17 levels."""
     scene = fp.Scene(ORDERS[name](100_000), np.full(100_000, 0.1))
     tree, again = scene.tree, sphere_tree(scene.centers, scene.radii)
-    assert all(np.array_equal(a, b) for a, b in zip(tree, again, strict=True))
+    assert all(np.array_equal(a, b) for a, b in zip(tree[:4], again, strict=True))
     depth = np.zeros(len(tree.nodes), dtype=int)
     for node, (left, right) in enumerate(tree.children):
         if left >= 0:
