@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,18 +14,26 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, content
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, truth, whole_number
+from ffsr_plan.core.checks import FARTHEST, finite_array, number, text, truth
 from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.contacts import ShapeName, ZoneName
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted, html_table
 from ffsr_plan.meshes import mesh_files
 from ffsr_plan.meshes.sphere_cover import cover
+from ffsr_plan.robots.loading import load_robot
+from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene import sphere_files
 from ffsr_plan.scene.keep_in_zones import ZONES, Zone
 from ffsr_plan.scene.obstacle_shapes import SHAPES, ObstacleShape
 from ffsr_plan.scene.obstacle_tree import ObstacleTree, obstacle_tree
+from ffsr_plan.scene.scene_contents import (
+    checked_members,
+    checked_sources,
+    member_title,
+    row_count,
+)
+from ffsr_plan.scene.urdf_shapes import shapes_of
 
 _LARGEST_SCALE = 1e9  # [m] per unit of a mesh
 
@@ -83,15 +91,17 @@ class Scene:
                 with the index of the sphere; or something that is no shape or zone.
         """
         check_memory(
-            "scene", {"spheres": _rows(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
+            "scene", {"spheres": row_count(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
         )
         c, r = sphere_files.checked_spheres("scene ", centers, radii, "sphere")
         object.__setattr__(self, "centers", c)
         object.__setattr__(self, "radii", r)
         object.__setattr__(self, "excess", number("scene excess", excess, at_least=0.0))
-        object.__setattr__(self, "sources", _checked_sources(sources, len(r)))
-        object.__setattr__(self, "shapes", _members("shapes", shapes, tuple(SHAPES.values())))
-        object.__setattr__(self, "keep_in", _members("keep_in", keep_in, ZONES))
+        object.__setattr__(self, "sources", checked_sources(sources, len(r)))
+        object.__setattr__(
+            self, "shapes", checked_members("shapes", shapes, tuple(SHAPES.values()))
+        )
+        object.__setattr__(self, "keep_in", checked_members("keep_in", keep_in, ZONES))
         object.__setattr__(self, "growth", number("scene growth", growth, at_least=0.0))
 
     def grown(self, by: float) -> Scene:
@@ -189,6 +199,36 @@ class Scene:
         name = Path(mesh).name if isinstance(mesh, (str, Path)) else "mesh"
         return cls(spheres.centers, spheres.radii, excess).named(name)
 
+    @classmethod
+    def from_urdf(
+        cls,
+        source: str | Path | SpaceRobot,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        attitude: ArrayLike = (0.0, 0.0, 0.0),
+        joints: str | Mapping[str, float] | None = None,
+        *,
+        name: str = "",
+        **options: Any,  # noqa: ANN401 - those of `load_robot`
+    ) -> Scene:
+        """All collision shapes of a URDF, at rest: another robot, or a satellite to be visited.
+
+        Boxes, spheres, capsules and cylinders are taken as they are, meshes as convex hulls.
+
+        Args:
+            source: name of a bundled robot, path of a URDF, or a robot.
+            position: (3,) of its root link in the world [m].
+            attitude: (3,) ZYX angles of its root link [rad].
+            joints: joint values by name [rad or m], or the name of a posture; the others are zero.
+            name: that errors name its links with; the robot's name without one.
+            options: of `load_robot`, such as `package_dirs`.
+
+        Raises:
+            InvalidInput: what `load_robot` or `SpaceRobot.configuration` refuse.
+        """
+        robot = source if isinstance(source, SpaceRobot) else load_robot(source, **options)
+        q = robot.configuration(position, attitude, joints)
+        return cls(shapes=[*shapes_of(robot, q, text("name", name) or robot.name)])
+
     def named(self, source: str) -> Scene:
         """The same spheres, by which errors name this source.
 
@@ -212,7 +252,9 @@ class Scene:
             if obstacle < end:
                 return name
         others, place = (*self.shapes, *self.keep_in), obstacle - len(self.radii)
-        return _title(others[place], place, self) if 0 <= place < len(others) else ""
+        return (
+            member_title(others[place], place, len(self.shapes)) if 0 <= place < len(others) else ""
+        )
 
     def to_csv(self, path: str | Path) -> None:
         """Write a table that `from_csv` reads again bit for bit; `excess` is not written.
@@ -312,26 +354,6 @@ class Scene:
         return len(self.radii) + len(self.shapes) + len(self.keep_in)
 
 
-def _members(what: str, given: object, kinds: tuple[type, ...]) -> tuple[Any, ...]:
-    """A sequence of objects of some classes."""
-    names = ", ".join(kind.__name__ for kind in kinds)
-    if isinstance(given, (str, bytes)) or not isinstance(given, Sequence):
-        raise InvalidInput(f"scene {what}", given, f"a list of {names}")
-    for k, each in enumerate(given):
-        if not isinstance(each, kinds):
-            raise InvalidInput(f"scene {what}.{k}", each, f"an object of {names}")
-    return tuple(given)
-
-
-def _title(member: ObstacleShape | Zone, place: int, scene: Scene) -> str:
-    """A shape or zone as messages name it."""
-    zone = place >= len(scene.shapes)
-    number = place - len(scene.shapes) if zone else place
-    field = f"keep_in.{number}" if zone else f"shapes.{number}"
-    text = f"{member.word} '{member.name}'" if member.name else f"{member.word} ({field})"
-    return ZoneName(text) if zone else ShapeName(text)
-
-
 def _common_growth(one: Scene, other: Scene) -> float:
     """The growth of the shapes and zones of two scenes, which is one for both."""
     grown = [each.growth for each in (one, other) if each.shapes or each.keep_in]
@@ -344,31 +366,3 @@ def _plural(word: str, count: int) -> str:
     if count == 1:
         return word
     return word + ("es" if word.endswith("x") else "s")
-
-
-def _rows(values: object) -> int:
-    rows = isinstance(values, (list, tuple)) or (isinstance(values, np.ndarray) and values.ndim)
-    return len(values) if rows else 0  # type: ignore[arg-type]
-
-
-def _checked_sources(
-    sources: Sequence[tuple[str, int]], spheres: int
-) -> tuple[tuple[str, int], ...]:
-    """The sources, neighbours of one name together; nothing if no sphere has a name."""
-    merged: list[tuple[str, int]] = []
-    try:
-        pairs = [(name, count) for name, count in sources]
-    except (TypeError, ValueError):
-        raise InvalidInput("scene sources", sources, "pairs of a name and a number") from None
-    for name, count in pairs:
-        if not isinstance(name, str):
-            raise InvalidInput("scene sources", name, "a name and a number of spheres")
-        whole_number("scene sources", count, at_least=0)
-        if merged and merged[-1][0] == name == "":
-            merged[-1] = name, merged[-1][1] + count
-        elif count:
-            merged.append((name, count))
-    total = sum(count for _, count in merged)
-    if merged and total != spheres:
-        raise InvalidInput("scene sources", f"{total} spheres", f"all {spheres} of the scene")
-    return tuple(merged) if any(name for name, _ in merged) else ()
