@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.scene.obstacle_shapes import Cylinder, Ellipsoid, Hull
 from ffsr_plan.verification.motion_samples import Sampler
 from ffsr_plan.verification.separation import SampledDistances
 from ffsr_plan.verification.urdf_reading import Bodies
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 AGREEMENT = 1e-9
 """Allowed difference of lengths [m] and, relative, of F."""
 HULL_AGREEMENT = 1e-8
-"""Allowed difference of distances to a hull [m], the precision of Coal's iterations."""
+"""Allowed difference of distances to a hull, cylinder or ellipsoid [m], the precision of Coal's."""
 _PIECES = 40  # of a path without a lattice, between the 39 stations and the ends
 
 
@@ -83,6 +84,7 @@ def tolerances(
         objective: F.
     """
     hulls = any(shape.half is None and len(shape.points) > 2 for shape in bodies.shapes)
+    hulls |= any(isinstance(shape, (Cylinder, Ellipsoid, Hull)) for shape in problem.scene.shapes)
     sharp = HULL_AGREEMENT if hulls else AGREEMENT
     slope = problem.delta * float(np.sum(problem.length_unit / _capped(problem, nodes)[1:-1] ** 2))
     return sharp, AGREEMENT + slope * (sharp - AGREEMENT) / max(abs(objective), 1e-12)

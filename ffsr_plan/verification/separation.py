@@ -12,6 +12,14 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.verification.distances.obstacle_arrays import (
+    shape_arrays,
+    zone_arrays,
+)
+from ffsr_plan.verification.distances.obstacle_distance_kernels import (
+    shape_distances,
+    zone_distances,
+)
 from ffsr_plan.verification.distances.solid_arrays import SolidArrays, solid_arrays
 from ffsr_plan.verification.distances.solid_distance_kernels import (
     near_spheres,
@@ -47,7 +55,7 @@ class SampledDistances:
         """
         number = {shape: k for k, shape in enumerate(bodies.shapes)}
         pairs = bodies.pairs()
-        self.shapes = len(bodies.shapes) if len(scene.radii) else 0
+        self.shapes = len(bodies.shapes) if len(scene) else 0
         self.pairs: IntArray = np.array(
             [(number[a], number[b]) for a, b in pairs], dtype=np.int64
         ).reshape(-1, 2)
@@ -57,7 +65,10 @@ class SampledDistances:
         self.names += [(a.link, b.link) for a, b in pairs]
         self.parts = len(self.names)
         self._solids = arrays_of(bodies.shapes)
+        self._scene = scene
         self._blocks = sphere_blocks(scene.centers - origin, scene.radii)
+        self._obstacles, self._around = shape_arrays(scene.shapes, scene.growth, origin)
+        self._zones = zone_arrays(scene.keep_in, scene.growth, origin)
         self.stretches(np.zeros(0, dtype=np.int64), np.zeros((0, self.shapes, 3)), np.zeros(0))
 
     def middles(self, samples: Samples) -> Array:
@@ -82,9 +93,10 @@ class SampledDistances:
             reaches[k] = np.linalg.norm(track - middles[k], axis=2).max(axis=0)
             reaches[k] += travels[stretch == k][:, :shapes].max(axis=0) + _SPARE
         sizes = np.tile(self._solids.radii[:shapes], count)
-        self._near, self._starts = near_spheres(
-            middles.reshape(-1, 3), reaches.ravel(), sizes, self._blocks
-        )
+        way = middles.reshape(-1, 3), reaches.ravel(), sizes
+        self._near, self._starts = near_spheres(*way, self._blocks)
+        near, self._shape_starts = near_spheres(*way, self._around)
+        self._near_shapes = self._around.order[near]
 
     def at(
         self, samples: Samples, which: IntArray, part: IntArray, stretch: IntArray, enough: Array
@@ -105,17 +117,73 @@ class SampledDistances:
         outer = part < self.shapes
         asked = np.column_stack([which, part])
         begin = stretch[outer] * self.shapes + part[outer]
-        found[outer] = sphere_distances(
-            self._solids, asked[outer], samples.turns, samples.places, samples.base_turns,
-            samples.base_places, self._blocks.centers, self._blocks.radii, self._near,
+        found[outer] = self._to_obstacles(
+            samples,
+            asked[outer],
             np.column_stack([self._starts[begin], self._starts[begin + 1]]),
-        )  # fmt: skip
+            np.column_stack([self._shape_starts[begin], self._shape_starts[begin + 1]]),
+        )
         asked[:, 1] -= self.shapes
         found[~outer] = pair_distances(
             self._solids, asked[~outer], self.pairs, samples.turns, samples.places,
             np.maximum(enough[~outer], _SHARP),
         )  # fmt: skip
         return found
+
+    def _to_obstacles(
+        self, samples: Samples, asked: IntArray, spheres: IntArray, shapes: IntArray
+    ) -> Array:
+        """Distances to all obstacles, for questions (q, 2) and their lists (q, 2)."""
+        placed = self._placed(samples, asked)
+        found = sphere_distances(
+            *placed, self._blocks.centers, self._blocks.radii, self._near, spheres
+        )  # fmt: skip
+        if len(self._zones.planes) + len(self._zones.balls):
+            found = zone_distances(*placed, self._zones, found)
+        if len(self._obstacles.radii):
+            found = shape_distances(*placed, self._obstacles, self._near_shapes, shapes, found)
+        return found
+
+    def _placed(self, samples: Samples, asked: IntArray) -> tuple[object, ...]:
+        """What the kernels are told of solids and questions."""
+        return (
+            self._solids, asked, samples.turns, samples.places, samples.base_turns,
+            samples.base_places,
+        )  # fmt: skip
+
+    def nearest_obstacle(self, samples: Samples, which: int, part: int) -> str:
+        """The obstacle that is nearest to a shape, in words.
+
+        Args:
+            samples: the samples.
+            which: one of them.
+            part: the shape.
+
+        Returns:
+            The name of a shape or zone, "an obstacle" for a sphere.
+        """
+        scene = self._scene
+        spheres, shapes = len(scene.radii), len(scene.shapes)
+        row = np.array([[which, part]], dtype=np.int64)
+
+        def each(count: int) -> tuple[tuple[object, ...], IntArray, IntArray]:
+            order = np.arange(count)
+            ranges = np.column_stack([order, order + 1])
+            return self._placed(samples, np.repeat(row, count, axis=0)), order, ranges
+
+        placed, order, ranges = each(spheres)
+        to_spheres = sphere_distances(
+            *placed, self._blocks.centers, self._blocks.radii, order, ranges
+        )
+        placed, order, ranges = each(shapes)
+        far = np.full(shapes, np.inf)
+        to_shapes = shape_distances(*placed, self._obstacles, order, ranges, far)
+        to_zones = [
+            zone_distances(*self._placed(samples, row), self._zones.only(k), np.full(1, np.inf))
+            for k in range(len(scene.keep_in))
+        ]
+        nearest = int(np.argmin(np.concatenate([to_spheres, to_shapes, *to_zones])))
+        return "an obstacle" if nearest < spheres else scene.source_of(nearest)
 
     def clearances(self, samples: Samples) -> Array:
         """(N,) least distances of any shape to an obstacle [m]; infinite without obstacles."""

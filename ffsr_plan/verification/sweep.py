@@ -53,6 +53,7 @@ class Swept:
 
     Attributes:
         clearance: least measured distance of a link to an obstacle; None without any.
+        obstacle: that obstacle in words, where the distance is not positive.
         separation: least measured distance of two links that must not touch; None without any.
         clearance_bound: lower bound on the clearance at and between all samples [m].
         hidden: where two samples may hide a contact, and the travel between them: with an obstacle
@@ -68,6 +69,7 @@ class Swept:
 
     def __init__(self, edges: int) -> None:
         self.clearance: Place | None = None
+        self.obstacle = "an obstacle"
         self.separation: Place | None = None
         self.clearance_bound = np.inf
         self.hidden: list[Place | None] = [None, None]
@@ -127,6 +129,7 @@ def sweep(
             break
         if on_progress is not None:
             on_progress(min(begin + size, total) / total)
+    run.name_obstacle()
     return run.found
 
 
@@ -149,6 +152,13 @@ class _Sweep:
         self._claim = course.clearance
         self._start = course.at(np.zeros(1, dtype=np.int64), np.zeros(1)).centers_of_mass[0]
         self._halvings = 0
+        self._nearest: tuple[Samples, int, int] | None = None
+
+    def name_obstacle(self) -> None:
+        """Note which obstacle the least distance is from, if it is touched."""
+        least = self.found.clearance
+        if least is not None and least.value <= 0.0 and self._nearest is not None:
+            self.found.obstacle = self.distances.nearest_obstacle(*self._nearest)
 
     def block(self, begin: int, end: int) -> None:
         """The even intervals from `begin` to `end`, and what they are halved into."""
@@ -223,6 +233,7 @@ class _Sweep:
             k = int(np.flatnonzero(outer)[np.argmin(values[outer])])
             if found.clearance is None or values[k] < found.clearance.value:
                 found.clearance = self._place(values[k], edge[which[k]], part[k])
+                self._nearest = samples, int(which[k]), int(part[k])
         inner = np.flatnonzero(~outer)
         if found.separation is not None:
             inner = inner[values[inner] < found.separation.value]

@@ -55,8 +55,8 @@ class Report:
         not_checked: one sentence for each part of the plan that was not checked.
         unchecked: links that have a mass or a visual shape but no collision shape: nothing is known
             about obstacles in their way.
-        least_clearance: least link-to-sphere distance over all samples [m]; of a hull with the
-            centre of a sphere inside it, a lower bound.
+        least_clearance: least distance of a link to an obstacle or to the outside of a zone, over
+            all samples [m]; where they overlap, a lower bound.
         clearance_bound: lower bound on that distance all along the motion, between the samples too,
             from bounds on the travel of all points [m].
         least_self_separation: least distance of links that must not touch, over all samples [m].
@@ -208,7 +208,8 @@ def collisions(proven: float, swept: Swept, motion: str = "plan", part: str = "e
     if swept.clearance is not None:
         least, edge, names = swept.clearance
         if least <= 0.0:
-            problems.append(f"link '{names[0]}' {approach(least)} an obstacle on {part} {edge}")
+            what = f"{approach(least)} {swept.obstacle}"
+            problems.append(f"link '{names[0]}' {what} on {part} {edge}")
     if swept.separation is not None and swept.separation.value <= 0.0:
         _, edge, names = swept.separation
         problems.append(f"two links touch on {part} {edge}: '{names[0]}' and '{names[1]}'")

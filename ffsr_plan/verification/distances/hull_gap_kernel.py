@@ -5,6 +5,12 @@ distance; whatever rounding does to the algorithm, only such gaps are returned. 
 those of the point nearest to the origin in the hull of a few differences of corners (Wolfe 1976).
 The difference that lies least far along it is added to them, and those that do not carry the
 nearest point are dropped, until no difference is nearer.
+
+An ellipsoid may be added to the second hull (Minkowski sum): to one point, it is an ellipsoid; a
+flat one added to a segment is a cylinder. The algorithm only asks for the point of a body that lies
+least far along a direction, and an ellipsoid has such a point in closed form. It has no corners, so
+the differences come ever closer to the nearest one and do not reach it: the gap, whose error is the
+square of that of the direction, then stops to grow where rounding hides the rest.
 """
 
 from __future__ import annotations
@@ -18,10 +24,13 @@ from ffsr_plan.core.kernels.compilation import kernel
 
 _ROUNDS = 200
 _PRECISION = 1e-13  # of the distance, relative, and in metres
+_PATIENCE = 4  # rounds without a nearer point or a larger gap
 
 
 @kernel
-def hull_gap(a: Array, b: Array, rotation: Array, shift: Array, enough: float) -> float:
+def hull_gap(
+    a: Array, b: Array, semi_axes: Array, rotation: Array, shift: Array, enough: float
+) -> float:
     """A lower bound on the signed distance of two hulls.
 
     Where they are apart it is their distance but for rounding, or at least `enough`. Where they
@@ -30,6 +39,8 @@ def hull_gap(a: Array, b: Array, rotation: Array, shift: Array, enough: float) -
     Args:
         a: (n, 3) corners of the first hull [m].
         b: (m, 3) corners of the second hull in its own frame [m].
+        semi_axes: (3,) of the ellipsoid that is added to the second hull, along the axes of its
+            frame; zeros for none [m].
         rotation: (3, 3) from the second frame to the first.
         shift: (3,) origin of the second frame in the first [m].
         enough: bound at which to stop [m].
@@ -40,28 +51,42 @@ def hull_gap(a: Array, b: Array, rotation: Array, shift: Array, enough: float) -
         for i in range(3):
             some[0, k] += rotation[k, i] * b[0, i]
         near[k] = some[0, k]
-    weights[0], count, best = 1.0, 1, -np.inf
+    weights[0], count, best, idle = 1.0, 1, -np.inf, 0
     for _ in range(_ROUNDS):
         square = near[0] ** 2 + near[1] ** 2 + near[2] ** 2
         size = math.sqrt(square)
         if size < _PRECISION:
             break
         found = some[count]  # the place of the next difference
-        best = max(best, _least_along(a, b, rotation, shift, near, found) / size)
+        before = best
+        best = max(best, _least_along(a, b, semi_axes, rotation, shift, near, found) / size)
         if best >= enough or size - best <= _PRECISION * (1.0 + size):
             return best
         weights[count] = 0.0
         count = _nearest(some, weights, count + 1, near)
-        if count == 4 or near[0] ** 2 + near[1] ** 2 + near[2] ** 2 >= square:
+        if near[0] ** 2 + near[1] ** 2 + near[2] ** 2 < square or best > before:
+            idle = 0  # directions still change where rounding hides it in the square of a length
+        else:
+            idle += 1
+        if count == 4 or idle >= _PATIENCE:
             break
-    return max(best, _along_normals(a, b, rotation, shift, some, count))
+    best = max(best, _along_normals(a, b, semi_axes, rotation, shift, some, count))
+    if best == -np.inf:  # a corner of one hull lies in the first corner of the other
+        best = _along_axes(a, b, semi_axes, rotation, shift)
+    return best
 
 
 @kernel
 def _least_along(
-    a: Array, b: Array, rotation: Array, shift: Array, along: Array, found: Array
+    a: Array,
+    b: Array,
+    semi_axes: Array,
+    rotation: Array,
+    shift: Array,
+    along: Array,
+    found: Array,
 ) -> float:
-    """Least product of `along` (3,) with a difference of corners, which is put into `found`."""
+    """Least product of `along` (3,) with a difference of points, which is put into `found`."""
     most, best_a = -np.inf, 0
     for i in range(len(a)):
         value = a[i, 0] * along[0] + a[i, 1] * along[1] + a[i, 2] * along[2]
@@ -75,11 +100,16 @@ def _least_along(
         value = b[i, 0] * x + b[i, 1] * y + b[i, 2] * z
         if value < least:
             least, best_b = value, i
+    u, v, w = semi_axes[0] * x, semi_axes[1] * y, semi_axes[2] * z
+    size = math.sqrt(u * u + v * v + w * w)
+    share = 1.0 / size if size > 0.0 else 0.0
+    x = b[best_b, 0] - semi_axes[0] * u * share
+    y = b[best_b, 1] - semi_axes[1] * v * share
+    z = b[best_b, 2] - semi_axes[2] * w * share
     total = 0.0
     for k in range(3):
         found[k] = shift[k] - a[best_a, k]
-        for i in range(3):
-            found[k] += rotation[k, i] * b[best_b, i]
+        found[k] += rotation[k, 0] * x + rotation[k, 1] * y + rotation[k, 2] * z
         total += found[k] * along[k]
     return total
 
@@ -154,7 +184,7 @@ def _affine(some: Array, count: int, wanted: Array) -> bool:
 
 @kernel
 def _along_normals(
-    a: Array, b: Array, rotation: Array, shift: Array, some: Array, count: int
+    a: Array, b: Array, semi_axes: Array, rotation: Array, shift: Array, some: Array, count: int
 ) -> float:
     """Largest gap along the normals of the triangles among `some` (count, 3), -inf without any.
 
@@ -173,9 +203,22 @@ def _along_normals(
         size = math.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
         if size > 0.0:
             for _ in range(2):
-                best = max(best, _least_along(a, b, rotation, shift, normal, found) / size)
+                gap = _least_along(a, b, semi_axes, rotation, shift, normal, found) / size
+                best = max(best, gap)
                 for n in range(3):
                     normal[n] = -normal[n]
+    return best
+
+
+@kernel
+def _along_axes(a: Array, b: Array, semi_axes: Array, rotation: Array, shift: Array) -> float:
+    """Largest gap along the axes of the first frame."""
+    best, axis, found = -np.inf, np.empty(3), np.empty(3)
+    for k in range(6):
+        for i in range(3):
+            axis[i] = 0.0
+        axis[k % 3] = 1.0 if k < 3 else -1.0
+        best = max(best, _least_along(a, b, semi_axes, rotation, shift, axis, found))
     return best
 
 

@@ -9,6 +9,12 @@ import numpy as np
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.verification.distances.hull_gap_kernel import hull_gap
+from ffsr_plan.verification.distances.point_distance_kernels import (
+    apart,
+    from_solid,
+    into_solid,
+    out_of_solid,
+)
 from ffsr_plan.verification.distances.solid_arrays import SolidArrays
 from ffsr_plan.verification.distances.sphere_blocks import BLOCK, SphereBlocks
 
@@ -50,26 +56,26 @@ def sphere_distances(
         n, s = asked[q]
         begin, end = ranges[q]
         corners = solids.corners[solids.starts[s] : solids.starts[s + 1]]
-        _out_of_solid(solids.middles[s], base_turns[n], turns[n, s], places[n, s], middle)
+        out_of_solid(solids.middles[s], base_turns[n], turns[n, s], places[n, s], middle)
         for i in range(3):
             middle[i] += base_places[n, i]
         nearest, least = -1, np.inf
         for k in range(begin, end):  # the sphere that seems nearest is measured first
-            bound = _apart(centers[near[k]], middle) - radii[near[k]]
+            bound = apart(centers[near[k]], middle) - radii[near[k]]
             if bound < least:
                 nearest, least = k, bound
         if nearest >= 0:
             near[begin], near[nearest] = near[nearest], near[begin]
         for k in range(begin, end):
             sphere = near[k]
-            bound = _apart(centers[sphere], middle) - radii[sphere] - solids.radii[s]
+            bound = apart(centers[sphere], middle) - radii[sphere] - solids.radii[s]
             if bound >= result[q] and k != begin:
                 continue
             for i in range(3):
                 between[i] = centers[sphere, i] - base_places[n, i]
-            _into_solid(between, base_turns[n], turns[n, s], places[n, s], local[0])
+            into_solid(between, base_turns[n], turns[n, s], places[n, s], local[0])
             taken = solids.swells[s] + radii[sphere]
-            distance = _from_solid(local, corners, solids.halves[s], result[q] + taken)
+            distance = from_solid(local, corners, solids.halves[s], result[q] + taken)
             result[q] = min(result[q], distance - taken)
     return result
 
@@ -98,6 +104,7 @@ def pair_distances(
     """
     result = np.empty(len(asked))
     rotation, shift, between = np.empty((3, 3)), np.empty(3), np.empty(3)
+    none = np.zeros(3)
     for q in range(len(asked)):
         n, pair = asked[q]
         a, b = pairs[pair]
@@ -114,12 +121,13 @@ def pair_distances(
             between[i] = shift[i]
             for j in range(3):
                 between[i] += rotation[i, j] * solids.middles[b, j]
-        gap = _apart(between, solids.middles[a]) - solids.radii[a] - solids.radii[b]
+        gap = apart(between, solids.middles[a]) - solids.radii[a] - solids.radii[b]
         if gap < enough[q]:
             swell = solids.swells[a] + solids.swells[b]
             gap = -swell + hull_gap(
                 solids.corners[solids.starts[a] : solids.starts[a + 1]],
                 solids.corners[solids.starts[b] : solids.starts[b + 1]],
+                none,
                 rotation,
                 shift,
                 enough[q] + swell,
@@ -131,6 +139,8 @@ def pair_distances(
 @kernel
 def near_spheres(middles: Array, reaches: Array, sizes: Array, blocks: SphereBlocks):  # type: ignore[no-untyped-def]  # noqa: ANN201
     """Spheres that can be the nearest one to a solid on some stretch of its way.
+
+    If they are spheres around obstacles, the obstacles may be as far as the spheres inside them.
 
     Args:
         middles: (t, 3) a point close to the solid's middle all along each stretch [m].
@@ -152,8 +162,9 @@ def near_spheres(middles: Array, reaches: Array, sizes: Array, blocks: SphereBlo
                 if _to_block(middles[t], blocks, block) > limit:
                     continue
                 for k in range(BLOCK * block, min(BLOCK * (block + 1), len(radii))):
-                    distance = _apart(centers[k], middles[t]) - radii[k]
-                    if fill == 0:  # the distance of the nearest sphere is at most this
+                    radius = blocks.inner[k] if fill == 0 else radii[k]
+                    distance = apart(centers[k], middles[t]) - radius
+                    if fill == 0:  # the distance of the nearest one is at most this
                         limit = min(limit, distance + 2.0 * reaches[t] + sizes[t])
                     elif distance <= limit:
                         if fill == 2:
@@ -175,66 +186,3 @@ def _to_block(point: Array, blocks: SphereBlocks, block: int) -> float:
         beyond = max(blocks.lows[block, i] - point[i], point[i] - blocks.highs[block, i])
         total += max(beyond, 0.0) ** 2
     return math.sqrt(total) - blocks.largest[block]
-
-
-@kernel
-def _into_solid(point: Array, base: Array, turn: Array, place: Array, local: Array) -> None:
-    """Put a point, from the base origin and in world axes, into the frame of a solid."""
-    x = base[0, 0] * point[0] + base[1, 0] * point[1] + base[2, 0] * point[2] - place[0]
-    y = base[0, 1] * point[0] + base[1, 1] * point[1] + base[2, 1] * point[2] - place[1]
-    z = base[0, 2] * point[0] + base[1, 2] * point[1] + base[2, 2] * point[2] - place[2]
-    for i in range(3):
-        local[i] = turn[0, i] * x + turn[1, i] * y + turn[2, i] * z
-
-
-@kernel
-def _out_of_solid(local: Array, base: Array, turn: Array, place: Array, point: Array) -> None:
-    """Put a point in the frame of a solid into world axes, from the base origin."""
-    for i in range(3):
-        point[i] = 0.0
-    for k in range(3):
-        along = place[k]
-        for i in range(3):
-            along += turn[k, i] * local[i]
-        for i in range(3):
-            point[i] += base[i, k] * along
-
-
-@kernel
-def _apart(a: Array, b: Array) -> float:
-    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
-
-
-@kernel
-def _from_solid(local: Array, corners: Array, half: Array, enough: float) -> float:
-    """Signed distance of a point (1, 3) from a solid without its swell, or at least `enough`."""
-    if half[0] >= 0.0:
-        return _from_box(local[0], half)
-    if len(corners) <= 2:
-        return _from_segment(local[0], corners[0], corners[-1])
-    return hull_gap(corners, local, np.eye(3), np.zeros(3), enough)
-
-
-@kernel
-def _from_box(point: Array, half: Array) -> float:
-    """Signed distance of a point from a box about the origin."""
-    outside, inside = 0.0, -np.inf
-    for i in range(3):
-        beyond = abs(point[i]) - half[i]
-        outside += max(beyond, 0.0) ** 2
-        inside = max(inside, beyond)
-    return math.sqrt(outside) + min(inside, 0.0)
-
-
-@kernel
-def _from_segment(point: Array, a: Array, b: Array) -> float:
-    """Distance of a point from a segment."""
-    square, along = 0.0, 0.0
-    for i in range(3):
-        square += (b[i] - a[i]) ** 2
-        along += (b[i] - a[i]) * (point[i] - a[i])
-    share = min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
-    total = 0.0
-    for i in range(3):
-        total += (point[i] - a[i] - share * (b[i] - a[i])) ** 2
-    return math.sqrt(total)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, IntArray
 
 BLOCK = 64
 """Spheres of a block; the last one has fewer."""
@@ -26,6 +26,8 @@ class SphereBlocks(NamedTuple):
         lows: (b, 3) least coordinates of the centres of each block [m].
         highs: (b, 3) greatest ones [m].
         largest: (b,) largest radius of each block [m].
+        inner: (N,) radii of the spheres inside what the spheres stand for [m].
+        order: (N,) number of each sphere before they were put into blocks.
     """
 
     centers: Array
@@ -33,18 +35,23 @@ class SphereBlocks(NamedTuple):
     lows: Array
     highs: Array
     largest: Array
+    inner: Array
+    order: IntArray
 
 
-def sphere_blocks(centers: Array, radii: Array) -> SphereBlocks:
+def sphere_blocks(centers: Array, radii: Array, inner: Array | None = None) -> SphereBlocks:
     """Put spheres into blocks along a Z-order curve, on which neighbours are close in space.
 
     Args:
         centers: (N, 3) [m].
         radii: (N,) [m].
+        inner: (N,) radii of spheres about the same centres, inside the obstacles that the others
+            contain [m]; None if the obstacles are spheres.
     """
+    within = radii if inner is None else inner
     if not len(radii):
-        none = np.zeros((0, 3))
-        return SphereBlocks(none, np.zeros(0), none, none, np.zeros(0))
+        none, empty = np.zeros((0, 3)), np.zeros(0)
+        return SphereBlocks(none, empty, none, none, empty, empty, np.zeros(0, dtype=np.int64))
     low = centers.min(axis=0)
     cell = max(float(np.max(centers - low)), 1e-9) / (2**_BITS - 1)
     cells = ((centers - low) / cell).astype(np.uint64)
@@ -57,6 +64,8 @@ def sphere_blocks(centers: Array, radii: Array) -> SphereBlocks:
         np.minimum.reduceat(own, begins),
         np.maximum.reduceat(own, begins),
         np.maximum.reduceat(sizes, begins),
+        within[order],
+        order,
     )
 
 

@@ -61,7 +61,8 @@ class FlightReport:
         torque_error: of joint torques, relative to their peak.
         delta_v_error: relative difference of delta-v from the integral of |thrust| / mass.
         limits: largest share in use of each limit that there is, by name; 1 is all of it.
-        least_clearance: least link-to-sphere distance over all samples of the path [m].
+        least_clearance: least distance of a link to an obstacle or to the outside of a zone, over
+            all samples of the path [m]; where they overlap, a lower bound.
         clearance_bound: lower bound on it all along the path, between the samples too [m]; pulses
             displace the robot from its path by at most `flight.corner_cut`.
         least_self_separation: least distance of links that must not touch, over all samples [m].
