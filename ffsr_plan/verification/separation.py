@@ -1,5 +1,7 @@
 """Distances of placed shapes: to the obstacles along a motion, and to one another.
 
+Obstacles are spheres, shapes of other kinds, and the outside of zones that the robot stays in.
+
 The distances are computed by hand on purpose: python-fcl is the library from which Coal, the
 planner's, was derived, and would not be independent of it.
 """

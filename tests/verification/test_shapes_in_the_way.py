@@ -9,7 +9,7 @@ import ffsr_plan as fp
 from ffsr_plan.core.arrays import frozen
 from ffsr_plan.scene.keep_in_zones import HalfSpace
 from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
-from ffsr_plan.verification.motion_samples import Sampler
+from ffsr_plan.verification.flights.verify_flight import verify_flight
 from ffsr_plan.verification.recomputed_objective import objective_of, station_clearances
 from ffsr_plan.verification.urdf_reading import Bodies
 from tests.helpers.careless_plans import MODES, careless_plan, placed
@@ -159,4 +159,40 @@ def test_clearances_between_nodes_count_shapes_without_a_lattice():
     (solid, poses), *_ = placed(plan, np.linspace(0.0, 1.0, 41))
     expected = [nearest_points(solid, pose[:3, :3], pose[:3, 3], shape) for pose in poses]
     assert np.allclose(found, expected, rtol=0.0, atol=1e-6)
-    assert Sampler(plan, bodies).edges == plan.edges
+
+
+class Elsewhere:
+    """A flight in another scene."""
+
+    def __init__(self, flight, scene):
+        self._flight, self.problem = flight, replace(flight.problem, scene=scene)
+
+    def __getattr__(self, name):
+        return getattr(self._flight, name)
+
+
+def flown_among(flight, **obstacles):
+    """Report of a flight in another scene, without a clearance to confirm."""
+    return verify_flight(Elsewhere(flight, fp.Scene(**obstacles)), 0.0)
+
+
+@pytest.mark.parametrize("kind", AROUND)
+def test_a_shape_in_the_way_of_a_flight_is_found(fig2a_plan, kind):
+    flight = fig2a_plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01)
+    place = flight.at([0.4 * flight.duration]).base_position[0]
+    shape = moved(replace(AROUND[kind], name="relic"), place)
+    assert "'relic' on piece" in " ".join(flown_among(flight, shapes=[shape]).problems)
+    far = flown_among(flight, shapes=[moved(shape, np.array([0.0, 0.0, 30.0]))])
+    assert far.ok, far.problems
+    assert 20.0 < far.least_clearance < 30.0
+
+
+def test_a_flight_out_of_a_zone_is_found(fig2a_plan):
+    flight = fig2a_plan.timed(joint_acceleration=0.05, thruster_acceleration=0.01)
+    ends = flight.problem.start[:3], flight.problem.goal[:3]
+    middle, size = np.mean(ends, axis=0), np.abs(ends[1] - ends[0])
+    narrow = flown_among(flight, keep_in=[Box(size + 0.01, middle)])
+    assert "the outside of box (keep_in.0) on piece" in " ".join(narrow.problems)
+    wide = flown_among(flight, keep_in=[Box(size + 20.0, middle)])
+    assert wide.ok, wide.problems
+    assert 0.0 < wide.clearance_bound <= wide.least_clearance < 10.0
