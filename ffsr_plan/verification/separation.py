@@ -1,5 +1,7 @@
 """Distances of placed shapes: to the obstacles along a motion, and to one another.
 
+Obstacles are spheres, shapes of other kinds, and the outside of zones that the robot stays in.
+
 The distances are computed by hand on purpose: python-fcl is the library from which Coal, the
 planner's, was derived, and would not be independent of it.
 """
@@ -31,6 +33,7 @@ from ffsr_plan.verification.motion_samples import Samples
 from ffsr_plan.verification.solids import Shape
 from ffsr_plan.verification.urdf_reading import Bodies
 
+_Placed = tuple[SolidArrays, IntArray, Array, Array, Array, Array]
 _SHARP = 0.02  # [m] distances of links below this are exact; larger ones may be those of spheres
 _SPARE = 1e-6  # [m] by which the lists of near obstacles are longer than they need to be
 
@@ -144,7 +147,7 @@ class SampledDistances:
             found = shape_distances(*placed, self._obstacles, self._near_shapes, shapes, found)
         return found
 
-    def _placed(self, samples: Samples, asked: IntArray) -> tuple[object, ...]:
+    def _placed(self, samples: Samples, asked: IntArray) -> _Placed:
         """What the kernels are told of solids and questions."""
         return (
             self._solids, asked, samples.turns, samples.places, samples.base_turns,
@@ -166,7 +169,7 @@ class SampledDistances:
         spheres, shapes = len(scene.radii), len(scene.shapes)
         row = np.array([[which, part]], dtype=np.int64)
 
-        def each(count: int) -> tuple[tuple[object, ...], IntArray, IntArray]:
+        def each(count: int) -> tuple[_Placed, IntArray, IntArray]:
             order = np.arange(count)
             ranges = np.column_stack([order, order + 1])
             return self._placed(samples, np.repeat(row, count, axis=0)), order, ranges

@@ -1,4 +1,4 @@
-"""Independent verification of a plan: closed-form distances all along it, momentum by bodies.
+"""Independent verification of a plan: distances of its own all along it, momentum by bodies.
 
 No code here calls the planner's clearance, momentum, length or objective code. The motion `plan.at`
 is sampled as it is; velocities are finite differences of link poses. The plan's wheel momentum,

@@ -191,6 +191,14 @@ def test_many_shapes_give_the_least_of_all_pairs():
     assert 20 < np.sum(least > 0.0) < len(least) - 20
 
 
+def test_a_long_shape_hides_no_other_one():
+    """A sphere around a boom contains the solid, but the boom is farther away than a ball is."""
+    rng, robot = np.random.default_rng(8), solids.ball("link", np.eye(4), 0.1)
+    boom = Box([0.0, 0.0, 20.0], position=[5.0, 0.0, 0.0])
+    scene = scene_of(boom, Ball(0.5, position=[-3.0, 0.0, 0.0]))
+    assert measured(rng, robot, *HERE, scene) == pytest.approx(2.4, abs=EXACT)
+
+
 def test_shapes_far_away_are_not_measured():
     """The list of a stretch holds few of ten thousand shapes."""
     rng = np.random.default_rng(8)
