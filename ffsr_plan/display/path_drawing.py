@@ -94,8 +94,7 @@ def draw_zones(
     *,
     line: str,
     tint: tuple[str, float],
-    label: str = "_",
-) -> None:
+) -> list[Zone]:
     """Dashed lines where keep-in zones end, and a tint on what certainly is outside of them.
 
     Its limits have to be those of all that is drawn: a plane goes from edge to edge.
@@ -107,20 +106,19 @@ def draw_zones(
         height: see `flat_zone`.
         line: colour of the lines.
         tint: colour and opacity of what is outside.
-        label: in the legend.
+
+    Returns:
+        The zones whose end can be seen within the limits.
     """
     from matplotlib.collections import LineCollection
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
-    x, y = _FRAME * abs(right - left), _FRAME * abs(high - low)
-    frame = np.array([[left - x, low - y], [right + x, low - y], [right + x, high + y]])
-    frame = np.vstack([frame, [left - x, high + y]])
+    picture = np.array([[left, low], [right, low], [right, high], [left, high]])
+    frame = picture + 2.0 * _FRAME * (picture - picture.mean(axis=0))
     drawn = [flat_zone(zone, axes, height, frame) for zone in zones]
-    for zone in drawn:
-        if zone is None:
-            continue
+    for zone in filter(None, drawn):
         dashes = LineCollection(
             [zone.border], colors=line, linewidths=1.1, linestyles=[_DASHES], zorder=2.5
         )
@@ -131,11 +129,12 @@ def draw_zones(
             patch = PathPatch(outside, facecolor=tint[0], alpha=tint[1], lw=0, zorder=0.5)
             patch.set_in_layout(False)
             ax.add_artist(patch)
-    if any(zone is not None for zone in drawn):
-        ax.plot([], [], color=line, lw=1.1, ls=_DASHES, label=label)
+    return [zone for zone in zones if flat_zone(zone, axes, height, picture) is not None]
 
 
-def draw_named_zones(ax: Axes, problem: Problem, axes: Array, style: Style) -> None:
+def draw_named_zones(
+    ax: Axes, problem: Problem, axes: Array, style: Style, widest: int = 60
+) -> None:
     """The keep-in zones of a problem, with an entry in the legend; see `draw_zones`.
 
     Args:
@@ -143,18 +142,14 @@ def draw_named_zones(ax: Axes, problem: Problem, axes: Array, style: Style) -> N
         problem: has the zones; a plane not seen edge-on is cut at the height of its start.
         axes: (3, 3) view axes.
         style: has `zones`, and the colour of `obstacles`.
+        widest: letters of a line in the legend.
     """
-    zones = problem.scene.keep_in
-    if zones:
-        draw_zones(
-            ax,
-            zones,
-            axes,
-            float(problem.start[:3] @ axes[2]),
-            line=style.colour("zones"),
-            tint=(style.colour("obstacles"), 0.18),
-            label=legend_of(zones, style.label("zones")),
-        )
+    colour, height = style.colour("zones"), float(problem.start[:3] @ axes[2])
+    tint = (style.colour("obstacles"), 0.18)
+    seen = draw_zones(ax, problem.scene.keep_in, axes, height, line=colour, tint=tint)
+    if seen:
+        label = legend_of(seen, style.label("zones"), widest)
+        ax.plot([], [], color=colour, lw=1.1, ls=_DASHES, label=label)
 
 
 def draw_silhouettes(

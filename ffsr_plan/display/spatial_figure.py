@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 _TURN, _ELEVATION = 68.0, 28.0  # of the viewer from the direction of the path, from the plane [deg]
 _LIGHT = np.array([-0.45, -0.55, 0.70]) / np.linalg.norm([-0.45, -0.55, 0.70])  # towards it
 _DARKEST = 0.42  # brightness of faces that turn away from the light
+_TALLEST = 0.85  # half of the height in the picture at which it is as large as it may be
 _TRACK_WIDTH = 0.006  # of the largest extent
 _LONGEST = 0.15  # side of a face, in extents of its shape
 
@@ -148,7 +149,7 @@ def _draw_zones(
             x, y, z = np.concatenate([dashes, gaps], axis=1).reshape(-1, 3).T
             ax.add_line(Line3D(x, y, z, color=colour, lw=0.9, zorder=zorder, clip_on=False))
     if zones:
-        label = legend_of(zones, style.label("zones"))
+        label = legend_of(zones, style.label("zones"), 40)
         ax.plot([], [], color=colour, lw=0.9, ls=(0, (5, 3)), label=label)
 
 
@@ -200,9 +201,13 @@ def _set_view(ax: Any, problem: Problem, low: Array, high: Array) -> None:  # no
     for k, name in enumerate("xyz"):
         getattr(ax, f"set_{name}lim")(middle[k] - half[k], middle[k] + half[k])
         getattr(ax, f"set_{name}label")(f"{name} [m]")
-    ax.set_box_aspect(half, zoom=1.4)
     along = view_axes(problem)[0]
-    ax.view_init(elev=_ELEVATION, azim=np.degrees(np.arctan2(along[1], along[0])) - _TURN)
+    turn = np.arctan2(along[1], along[0]) - np.radians(_TURN)
+    rise, unit = np.radians(_ELEVATION), half / np.linalg.norm(half)
+    depth = abs(np.cos(turn)) * unit[0] + abs(np.sin(turn)) * unit[1]
+    tall = np.cos(rise) * unit[2] + np.sin(rise) * depth  # half of the height in the picture
+    ax.set_box_aspect(half, zoom=min(1.4, _TALLEST / tall))
+    ax.view_init(elev=_ELEVATION, azim=np.degrees(turn))
     for name, size in zip("xyz", half, strict=True):
         if size < 0.25 * np.max(half):
             getattr(ax, f"{name}axis").set_major_locator(_few_ticks())

@@ -58,6 +58,8 @@ def test_lines_of_a_box_are_its_twelve_edges():
 def test_lines_of_a_ball_lie_on_it():
     lines = lines_of(fp.Ball(2.0, [1.0, 2.0, 3.0]), LOW, HIGH)
     assert np.allclose(np.linalg.norm(lines.segments - [1.0, 2.0, 3.0], axis=2), 2.0)
+    lengths = np.linalg.norm(lines.segments[:, 1] - lines.segments[:, 0], axis=1)
+    assert lengths.sum() == pytest.approx(3.0 * 0.5 * 4.0 * np.pi, rel=1e-2)  # half of it is gaps
 
 
 def test_dashes_begin_and_end_with_their_line_and_cover_about_half():
@@ -118,9 +120,11 @@ def test_legends_and_names_are_those_of_the_zones():
         fp.Ball(3.0),
         fp.HalfSpace([1, 0, 0], [90, 0, 0]),
     ]
-    assert legend_of(zones, ZONE) == f"{ZONE}: hall"
-    assert legend_of(zones[1:], ZONE) == ZONE
-    assert legend_of(zones, "stay here") == "stay here"
+    assert legend_of(zones, ZONE, 60) == f"{ZONE}: hall"
+    assert legend_of(zones[1:], ZONE, 60) == ZONE
+    names = [fp.Ball(1.0, name=name) for name in ("communication range", "deck")]
+    assert legend_of(names, ZONE, 22) == f"{ZONE}:\ncommunication range,\ndeck"
+    assert legend_of(zones, "stay here", 3) == "stay here"
     ((name, at),) = name_places(zones, LOW, HIGH)
     assert name == "hall"
     assert np.allclose(at, [1.0, 1.0, 1.0])

@@ -40,6 +40,7 @@ _STEPS = 800  # of time
 _WIDTH, _PANEL_HEIGHT = 8.0, 1.25  # [inches]
 _SHARE = 0.72  # of the width that axes have beside their legends
 _MOST_NAMED = 8  # curves of a panel that the legend names one by one
+_LETTERS = 20  # of a line in the legend beside the path
 _FAR = 2.5  # peaks above which a limit is not drawn but written
 _LINES = ("-", "--", ":")
 _MARK = "#c9ccd1"  # of the times of silhouettes
@@ -183,7 +184,9 @@ def _draw_path(
             bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75},
         )
     name_directions(ax, problem, "path", leaves_plane=False)
-    draw_named_zones(ax, problem, view, style)
+    draw_named_zones(ax, problem, view, style, _LETTERS)
+    if problem.scene.keep_in:
+        ax.set_anchor("W")  # leaves the room to the legend
     ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
 
 

@@ -28,6 +28,8 @@ from ffsr_plan.scene.scene import Scene
 ROUND = 24
 """Parallels of latitude at which polygons look round."""
 _THINNEST = 0.005  # half of the side of a drawn box [m], so that flat panels are visible edge-on
+_TURN = np.linspace(0.0, 2.0 * np.pi, 120, endpoint=False)
+_CIRCLE = np.column_stack([np.cos(_TURN), np.sin(_TURN)])
 _CUBE = np.array(list(product((-1.0, 1.0), repeat=3)))
 _SIDES = np.array(
     [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
@@ -90,7 +92,19 @@ def outline_of(shape: ObstacleShape, view: Array) -> Array:
     Returns:
         (k, 2) corners, counter-clockwise [m].
     """
-    return convex_outline(mesh_of(shape).vertices @ view.T)
+    if isinstance(shape, (Box, Hull)):
+        return convex_outline(mesh_of(shape).vertices @ view.T)
+    middle, turn = view @ shape.position, view @ rotations.matrix(shape.attitude)
+    if isinstance(shape, Ellipsoid):
+        stretched = turn * shape.semi_axes  # a projection of an ellipsoid is an ellipse
+        corners: Array = _CIRCLE @ np.linalg.cholesky(stretched @ stretched.T).T + middle
+        return corners
+    if isinstance(shape, Cylinder):
+        rim = shape.radius * _CIRCLE @ turn[:, :2].T
+    else:
+        rim = shape.skin * _CIRCLE
+    lift = turn[:, 2] * shape.half_sides[2]
+    return convex_outline(np.vstack([rim - lift, rim + lift]) + middle)
 
 
 def shaded_sides(shape: ObstacleShape, axes: Array, light: Array) -> tuple[Array, Array]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
+from textwrap import fill
 from typing import NamedTuple
 
 import numpy as np
@@ -52,7 +53,7 @@ class FlatZone(NamedTuple):
 
 
 def lines_of(zone: Zone, low: Array, high: Array) -> ZoneLines:
-    """Edges of a box, three circles of a ball, the edge of a piece of a half-space's plane.
+    """Edges of a box, three dashed circles of a ball, the edge of a piece of a half-space's plane.
 
     Args:
         zone: the zone.
@@ -68,7 +69,7 @@ def lines_of(zone: Zone, low: Array, high: Array) -> ZoneLines:
         angle = np.linspace(0.0, 2.0 * np.pi, _CIRCLE + 1)
         flat = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
         circles = np.stack([np.roll(flat, k, axis=1) for k in range(3)])
-        ends = np.stack([circles[:, :-1], circles[:, 1:]], axis=2).reshape(-1, 2, 3)
+        ends = np.stack([circles[:, :-1:2], circles[:, 1::2]], axis=2).reshape(-1, 2, 3)
         return ZoneLines(zone.radius * ends + zone.position, ends.mean(axis=1))
     ends = _CUBE_EDGES * zone.half_sides @ turn + zone.position
     return ZoneLines(ends, _CUBE_EDGES.mean(axis=1) @ turn)
@@ -157,10 +158,16 @@ def flat_zone(zone: Zone, axes: Array, height: float, corners: Array) -> FlatZon
     return FlatZone(np.array(kept), np.array(border), abs(float(normal[2])) < _EDGE_ON)
 
 
-def legend_of(zones: Sequence[Zone], own: str) -> str:
-    """The text of zones in a legend: their names, if they have any, after what they are."""
+def legend_of(zones: Sequence[Zone], own: str, widest: int) -> str:
+    """The text of zones in a legend: their names, if they have any, after what they are.
+
+    Args:
+        zones: the zones.
+        own: the figure's word for zones; one that the user chose stays as it is.
+        widest: letters of a line.
+    """
     names = [zone.name for zone in zones if zone.name]
-    return f"{own}: {', '.join(names)}" if names and own == ZONE else own
+    return fill(f"{own}: {', '.join(names)}", widest) if names and own == ZONE else own
 
 
 def name_places(zones: Sequence[Zone], low: Array, high: Array) -> list[tuple[str, Array]]:
