@@ -80,6 +80,8 @@ if TYPE_CHECKING:
     from ffsr_plan.satellites.composition import Mount, compose
     from ffsr_plan.scenario_files.scenario import Scenario, load_scenario
     from ffsr_plan.scene import generators
+    from ffsr_plan.scene.keep_in_zones import HalfSpace
+    from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
     from ffsr_plan.scene.scene import Scene
     from ffsr_plan.search.ants.ant_system import AntSystem
     from ffsr_plan.search.ants.max_min import MaxMinAntSystem
@@ -106,8 +108,11 @@ __all__ = [
     "AttitudeOutOfReach",
     "Axis",
     "Balanced",
+    "Ball",
+    "Box",
     "Branches",
     "Bus",
+    "Capsule",
     "Certificate",
     "Clearance",
     "Components",
@@ -116,14 +121,18 @@ __all__ = [
     "CurvePoints",
     "CurvedMotion",
     "Cycle",
+    "Cylinder",
     "EdgeProof",
+    "Ellipsoid",
     "FfsrPlanError",
     "FlightReport",
     "FuelFigures",
     "GoalInCollision",
     "GoalPoseIgnored",
+    "HalfSpace",
     "HeldBase",
     "History",
+    "Hull",
     "IntegrationError",
     "InternalError",
     "InvalidInput",
@@ -257,6 +266,8 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "satellites.bus": ("Bus", "Panel"),
     "satellites.composition": ("Mount", "compose"),
     "scenario_files.scenario": ("Scenario", "load_scenario"),
+    "scene.keep_in_zones": ("HalfSpace",),
+    "scene.obstacle_shapes": ("Ball", "Box", "Capsule", "Cylinder", "Ellipsoid", "Hull"),
     "scene.scene": ("Scene",),
     "search.ants.ant_system": ("AntSystem",),
     "search.ants.max_min": ("MaxMinAntSystem",),

@@ -13,6 +13,7 @@ from ffsr_plan.core.text_files import write_files
 from ffsr_plan.display import figure_style
 from ffsr_plan.display.figure_style import Named, Style, axes_or_new, figure_bytes, fit_height
 from ffsr_plan.display.path_drawing import (
+    draw_named_zones,
     draw_obstacles,
     draw_silhouettes,
     mark_ends,
@@ -20,6 +21,7 @@ from ffsr_plan.display.path_drawing import (
 )
 from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.scenes.projection import VIEWS, view_axes
+from ffsr_plan.display.scenes.zone_outlines import ZONE
 from ffsr_plan.display.spatial_figure import spatial_figure
 from ffsr_plan.search.records import Trails
 
@@ -38,6 +40,7 @@ _OF_PATH = {
     "goal": (figure_style.GOAL, "goal"),
     "robot": (figure_style.ROBOT, ""),
     "obstacles": (figure_style.OBSTACLE, "obstacles near the motion"),
+    "zones": (figure_style.ZONE, ZONE),
     "trails": (figure_style.TRAILS, _ANTS),
 }
 _OF_CLEARANCE = {
@@ -72,7 +75,8 @@ def path_figure(
             of a new figure.
         view: `path`, seen along the normal y' of the path frame, `side`, along the lateral x', or
             `3d`, in perspective with the axes of the world.
-        colours: matplotlib colours of `path`, `start`, `goal`, `robot`, `obstacles` and `trails`.
+        colours: matplotlib colours of `path`, `start`, `goal`, `robot`, `obstacles`, `zones` and
+            `trails`.
         labels: texts in the legend, by the same names.
 
     Returns:
@@ -103,6 +107,7 @@ def path_figure(
         ax.plot([], [], "o", color=grey, label=style.label("obstacles"))
         ax.plot([], [], "o", color=grey, alpha=0.2, label="others")
     name_directions(ax, problem, view, _leaves_plane(plan))
+    draw_named_zones(ax, problem, axes, style)
     ax.set_title(_path_title(plan))
     if own_figure:
         fit_height(figure, ax)

@@ -23,8 +23,12 @@ from ffsr_plan.display.scenes.scene_objects import (
     add_obstacles,
     add_track,
     add_trails,
+    add_zones,
     set_up,
+    shown_box,
 )
+from ffsr_plan.display.scenes.shape_outlines import labels
+from ffsr_plan.display.scenes.zone_outlines import name_places
 from ffsr_plan.display.web.html_template import html_page
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.problem.problem import Problem
@@ -99,6 +103,7 @@ def motion_page(played: PlayedMotion) -> str:
     view = set_up(viewer, problem, centers, radii)
     solid = drawn_solid(problem.scene, centers)
     add_obstacles(viewer["obstacles"], problem.scene, solid)
+    add_zones(viewer["zones"], problem.scene, centers, radii)
     start, goal = frames.configurations[[0, -1]]
     add_ends(viewer, problem.robot, start, goal, played.shapes)
     _add_tracks(viewer, problem, frames, plan)
@@ -112,7 +117,7 @@ def motion_page(played: PlayedMotion) -> str:
         "charts": [_chart(chart, played.bound) for chart in played.charts],
         "base": np.round(frames.configurations[:, :7], _DIGITS).tolist(),
         "body": _body(problem, frames, centers, radii),
-        "names": obstacle_names(problem.scene),
+        "names": obstacle_names(problem.scene) + _zone_names(problem.scene, centers, radii),
         "view": view,
         "ants": ants,
         "playing": played.playing,
@@ -160,20 +165,34 @@ def obstacle_names(scene: Scene) -> list[dict[str, Any]]:
     """Names of obstacles with their places in the world [m].
 
     A body of many spheres is named once. Spheres are named one by one, by their numbers where they
-    are no body of their own, if they are few.
+    are no body of their own, if they are few. So are shapes without a name; those with one are
+    named if these are few.
     """
     names: list[dict[str, Any]] = []
     begin = 0
-    few = len(scene) <= _MOST_NAMES
-    for name, count in scene.sources or (("", len(scene)),):
+    few = len(scene.radii) + len(scene.shapes) <= _MOST_NAMES
+    for name, count in scene.sources or (("", len(scene.radii)),):
         centers = scene.centers[begin : begin + count]
         if name and count and (count == 1 or not few):
-            names.append({"text": name, "at": centers.mean(axis=0).round(4).tolist()})
+            names.append(_name(name, centers.mean(axis=0)))
         elif few:
             numbered = enumerate(centers, start=begin)
-            names += [{"text": str(k), "at": c.round(4).tolist()} for k, c in numbered]
+            names += [_name(str(k), c) for k, c in numbered]
         begin += count
+    named = [each for each in labels(scene) if few or each.is_name]
+    if few or len(named) <= _MOST_NAMES:
+        names += [_name(each.text, each.at) for each in named]
     return names
+
+
+def _zone_names(scene: Scene, centers: Array, radii: Array) -> list[dict[str, Any]]:
+    """Names of zones, at a corner of each; the rest as of `add_zones`."""
+    places = name_places(scene.keep_in, *shown_box(scene, centers, radii))
+    return [_name(name, at) for name, at in places[:_MOST_NAMES]]
+
+
+def _name(text: str, at: Array) -> dict[str, Any]:
+    return {"text": text, "at": at.round(4).tolist()}
 
 
 def _add_tracks(

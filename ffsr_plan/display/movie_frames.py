@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ffsr_plan.display.movie_obstacles import DASHES, OBSTACLE, RINGS, draw_shaded
+from ffsr_plan.display.path_drawing import draw_zones
 from ffsr_plan.display.scenes.picture_data import MotionFrames, drawn_solid
 from ffsr_plan.display.scenes.projection import Outline, outlines, visible_shapes
 from ffsr_plan.display.scenes.scene_objects import TIPS, TRACK, glow
+from ffsr_plan.display.scenes.shape_outlines import points_of_extent
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -23,10 +26,10 @@ if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array
     from ffsr_plan.problem.problem import Problem
 
-TEXT, STRONG, CLEARANCE, CONTACT = "#9aa5b8", "#eceff4", "#5fb3ce", "#b02a30"
+TEXT, STRONG, CLEARANCE, CONTACT = "#9aa5b8", "#eceff4", RINGS, "#b02a30"
 ATTITUDE = "#f0b429"
-_BACKGROUND, _OBSTACLE, _START, _GOAL = "#070a12", "#aeb4bf", "#4fb3d9", "#58c27d"
-_DASHES, _DOTS = (0, (4, 3)), (0, (1, 2))
+_BACKGROUND, _START, _GOAL = "#070a12", "#4fb3d9", "#58c27d"
+_DOTS = (0, (1, 2))
 PANEL = 170  # height of the panel below the scene [px]
 ASPECTS = (0.25, 0.58)  # least and greatest height of the scene, in widths
 BYTES_PER_PIXEL = 6  # of a frame: in colours, and as it is written
@@ -184,10 +187,11 @@ def _curve_axes(
 def _extent(scene: MovingScene) -> tuple[Array, Array]:
     """Lower left and upper right corner (2,) of what is shown [m]."""
     obstacles, view = scene.problem.scene, scene.axes[:2]
-    solid = drawn_solid(obstacles, scene.frames.bounding_spheres()[0])
+    solid = drawn_solid(obstacles, scene.frames.bounding_spheres()[0])[: len(obstacles.radii)]
     points = [outline.polygon for robot in scene.robot for outline in robot]
     for sign in (-1.0, 1.0):
         points.append(obstacles.centers[solid] @ view.T + sign * obstacles.radii[solid, None])
+    points.append(points_of_extent(obstacles) @ view.T)
     cloud = np.vstack(points)
     return cloud.min(axis=0) - _MARGIN, cloud.max(axis=0) + _MARGIN
 
@@ -211,7 +215,7 @@ def _robot_bounds(scene: MovingScene) -> tuple[Array, Array]:
 
 
 def _draw_surroundings(axes: Axes, scene: MovingScene) -> None:
-    """Trails, obstacles, the path of the base, and the robot at start and goal."""
+    """Trails, obstacles, zones, the path of the base, and the robot at start and goal."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     if scene.trails is not None and len(scene.trails[0]):
@@ -220,49 +224,21 @@ def _draw_surroundings(axes: Axes, scene: MovingScene) -> None:
         lines = list(segments @ scene.axes[:2].T)
         trails = LineCollection(lines, colors=colours, linewidths=0.5 + strength, zorder=1)
         axes.add_collection(trails, autolim=False)
-    _draw_obstacles(axes, scene)
-    axes.plot(*_base_track(scene).T, color=TRACK, lw=0.9, ls=_DASHES, zorder=3)
+    origins, obstacles = scene.frames.origins[:, 0], scene.problem.scene
+    solid = drawn_solid(obstacles, scene.frames.bounding_spheres()[0])
+    draw_shaded(axes, obstacles, scene.axes, solid, origins, scene.ring)
+    draw_zones(
+        axes,
+        obstacles.keep_in,
+        scene.axes,
+        float(origins[0] @ scene.axes[2]),
+        line=OBSTACLE,
+        tint=(OBSTACLE, 0.12),
+    )
+    axes.plot(*_base_track(scene).T, color=TRACK, lw=0.9, ls=DASHES, zorder=3)
     for row, colour in ((0, _START), (-1, _GOAL)):
         polygons = [outline.polygon for outline in scene.robot[row]]
         axes.add_collection(PolyCollection(polygons, facecolor=colour, alpha=0.3, zorder=3))
-
-
-def _draw_obstacles(axes: Axes, scene: MovingScene) -> None:
-    """Shaded spheres; faint discs for those that are not solid; rings in the plane of motion."""
-    from matplotlib.patches import Circle
-
-    obstacles = scene.problem.scene
-    solid = drawn_solid(obstacles, scene.frames.bounding_spheres()[0])
-    local = obstacles.centers @ scene.axes.T
-    ball = _shaded_ball()
-    heights = np.append(local[:, 2], scene.frames.origins[:, 0] @ scene.axes[2])
-    in_plane = np.ptp(heights) < 1e-6
-    for k in np.argsort(local[:, 2], kind="stable"):
-        (x, y), radius = local[k, :2], float(obstacles.radii[k])
-        if not solid[k]:
-            axes.add_patch(Circle((x, y), radius, color=_OBSTACLE, alpha=0.08, zorder=1.5, lw=0))
-            continue
-        box = (x - radius, x + radius, y - radius, y + radius)
-        axes.imshow(ball, extent=box, zorder=2, interpolation="bilinear", aspect="auto")
-        if scene.ring is not None and in_plane:
-            ring = Circle((x, y), radius + scene.ring, fill=False, color=CLEARANCE, zorder=2)
-            ring.set(alpha=0.55, linewidth=0.9, linestyle=_DASHES)
-            axes.add_patch(ring)
-
-
-def _shaded_ball(pixels: int = 96) -> Array:
-    """(pixels, pixels, 4) picture of a grey ball, lit from the upper left."""
-    from matplotlib.colors import to_rgb
-
-    x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, pixels)])
-    y = -y
-    inside = x**2 + y**2 <= 1.0
-    z = np.sqrt(np.clip(1.0 - x**2 - y**2, 0.0, None))
-    light = np.clip((-0.45 * x + 0.55 * y + 0.7 * z) / np.sqrt(0.45**2 + 0.55**2 + 0.7**2), 0, 1)
-    ball = np.zeros((pixels, pixels, 4))
-    ball[..., :3] = (0.16 + 0.84 * light)[..., None] * to_rgb(_OBSTACLE)
-    ball[..., 3] = inside
-    return ball
 
 
 def _track_artists(axes: Axes, scene: MovingScene, row: int) -> list[Artist]:
@@ -325,7 +301,7 @@ def _draw_curve(axes: Axes, curve: PanelCurve) -> None:
     axes.set_ylim(-0.03 * values.max(), 1.1 * max(float(values.max()), 1e-9))
     for level, colour in curve.levels:
         if level <= axes.get_ylim()[1]:
-            axes.axhline(level, color=colour, lw=0.9, ls="-" if level == 0.0 else _DASHES)
+            axes.axhline(level, color=colour, lw=0.9, ls="-" if level == 0.0 else DASHES)
     axes.plot(values, color=curve.colour, lw=1.4)
     axes.text(0.0, 1.08, curve.label, color=TEXT, fontsize=8, transform=axes.transAxes)
 

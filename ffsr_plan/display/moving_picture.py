@@ -50,7 +50,7 @@ def write_gif(
     It shows the robot, its obstacles, the ants' trails and the tracks of base and arm tips. A panel
     below holds a close-up with the rotation of the base, and the clearance. If all obstacles lie in
     the plane of the motion, a ring around each of them marks the proven clearance: no point of the
-    robot ever enters it.
+    robot ever enters it. Of shapes it is around where that plane cuts them.
 
     Args:
         plan: the plan.

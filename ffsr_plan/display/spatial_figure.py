@@ -14,6 +14,13 @@ import numpy as np
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display.path_drawing import NUMBERED, mark_ends
 from ffsr_plan.display.scenes.projection import hull_points, view_axes
+from ffsr_plan.display.scenes.shape_outlines import (
+    labels,
+    mesh_of,
+    points_of_extent,
+    unit_normals,
+)
+from ffsr_plan.display.scenes.zone_outlines import dashed, legend_of, lines_of
 
 if TYPE_CHECKING:
     import pinocchio as pin
@@ -24,11 +31,15 @@ if TYPE_CHECKING:
     from ffsr_plan.display.figure_style import Style
     from ffsr_plan.display.scenes.picture_data import MotionFrames
     from ffsr_plan.problem.problem import Problem
+    from ffsr_plan.scene.keep_in_zones import Zone
+    from ffsr_plan.scene.obstacle_shapes import ObstacleShape
 
 _TURN, _ELEVATION = 68.0, 28.0  # of the viewer from the direction of the path, from the plane [deg]
 _LIGHT = np.array([-0.45, -0.55, 0.70]) / np.linalg.norm([-0.45, -0.55, 0.70])  # towards it
 _DARKEST = 0.42  # brightness of faces that turn away from the light
+_TALLEST = 0.85  # half of the height in the picture at which it is as large as it may be
 _TRACK_WIDTH = 0.006  # of the largest extent
+_LONGEST = 0.15  # side of a face, in extents of its shape
 
 
 class _Faces(NamedTuple):
@@ -46,9 +57,8 @@ class _Faces(NamedTuple):
         """Add faces (n, k, 3) of one colour and opacity in light, counter-clockwise outside."""
         from matplotlib.colors import to_rgb
 
-        normals = np.cross(polygons[:, 1] - polygons[:, 0], polygons[:, 2] - polygons[:, 1])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-        light = (_DARKEST + (1.0 - _DARKEST) * np.clip(normals @ _LIGHT, 0.0, 1.0))[:, None]
+        lit = np.clip(unit_normals(polygons) @ _LIGHT, 0.0, 1.0)
+        light = (_DARKEST + (1.0 - _DARKEST) * lit)[:, None]
         self.polygons.extend(polygons)
         self.colours.extend(np.hstack([light * to_rgb(colour), np.full_like(light, alpha)]))
 
@@ -75,8 +85,8 @@ def spatial_figure(
         problem: what is shown.
         frames: poses of the robot's links along the motion.
         rows: of the poses at which the robot is drawn.
-        solid: (N,) obstacles that are drawn; others would hide the robot.
-        style: has `path`, `start`, `goal`, `robot` and `obstacles`.
+        solid: (N + S,) spheres and shapes that are drawn; others would hide the robot.
+        style: has `path`, `start`, `goal`, `robot`, `obstacles` and `zones`.
         ax: axes to draw on, with `projection="3d"`; by default those of a new figure.
         title: of the figure.
 
@@ -85,28 +95,80 @@ def spatial_figure(
     """
     figure, ax3 = _axes_in_space(ax)
     faces, scene = _Faces([], []), problem.scene
-    ball = _ball(10)
-    for center, radius in zip(scene.centers[solid], scene.radii[solid], strict=True):
+    ball, count = _ball(10), len(scene.radii)
+    near = solid[:count]
+    for center, radius in zip(scene.centers[near], scene.radii[near], strict=True):
         faces.add(center + radius * ball, style.colour("obstacles"), 1.0)
+    for each in np.flatnonzero(solid[count:]):
+        faces.add(_shape(scene.shapes[each]), style.colour("obstacles"), 1.0)
     for row in rows:
         at_end = row in (rows[0], rows[-1])
         name = "robot" if not at_end else "start" if row == rows[0] else "goal"
         faces.add(_robot(frames, row), style.colour(name), 0.9 if at_end else 0.35)
-    cloud = np.vstack([np.vstack(faces.polygons), frames.origins[:, 0]])
+    cloud = np.vstack([*faces.polygons, frames.origins[:, 0], points_of_extent(scene)])
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     track = frames.origins[:, 0]
     faces.add_bright(_tube(track, _TRACK_WIDTH * float(np.max(high - low))), style.colour("path"))
     _draw(ax3, faces)
     ax3.plot([], [], color=style.colour("path"), lw=2.0, label=style.label("path"))
     mark_ends(ax3, style)
-    if len(scene) <= NUMBERED:
+    if count + len(scene.shapes) <= NUMBERED:
         for k, center in enumerate(scene.centers):
             x, y, z = center + np.array([0.0, 0.0, 1.25 * scene.radii[k]])
             ax3.text(x, y, z, str(k), ha="center", fontsize=8)
+        for label in labels(scene):
+            x, y, z = *label.at[:2], label.top + 0.02 * float(np.max(high - low))
+            ax3.text(x, y, z, label.text, ha="center", fontsize=8)
     _set_view(ax3, problem, low, high)
-    ax3.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0.02), ncols=3)
+    _draw_zones(ax3, scene.keep_in, low, high, style)
+    columns = 4 if scene.keep_in else 3
+    ax3.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0.02), ncols=columns)
     ax3.set_title(title)
     return figure
+
+
+def _draw_zones(
+    ax: Any,  # noqa: ANN401 - axes in 3-D have no types
+    zones: Sequence[Zone],
+    low: Array,
+    high: Array,
+    style: Style,
+) -> None:
+    """Dashed lines of zones: those on the far side behind all solids, the others before them."""
+    from mpl_toolkits.mplot3d.art3d import Line3D
+
+    rise, turn = np.radians(ax.elev), np.radians(ax.azim)
+    viewer = np.array([np.cos(rise) * np.cos(turn), np.cos(rise) * np.sin(turn), np.sin(rise)])
+    colour = style.colour("zones")
+    for zone in zones:
+        found = lines_of(zone, low, high)
+        behind = found.outward @ viewer < -1e-9
+        for chosen, zorder in ((behind, 0.0), (~behind, 1e6)):
+            dashes = dashed(found.segments[chosen], float(np.max(high - low)))
+            gaps = np.full((len(dashes), 1, 3), np.nan)
+            x, y, z = np.concatenate([dashes, gaps], axis=1).reshape(-1, 3).T
+            ax.add_line(Line3D(x, y, z, color=colour, lw=0.9, zorder=zorder, clip_on=False))
+    if zones:
+        label = legend_of(zones, style.label("zones"), 40)
+        ax.plot([], [], color=colour, lw=0.9, ls=(0, (5, 3)), label=label)
+
+
+def _shape(shape: ObstacleShape) -> Array:
+    """(n, 3, 3) triangles of a shape, the long ones cut: faces are sorted by their middles."""
+    triangles = mesh_of(shape, 12).triangles
+    longest = _LONGEST * float(np.max(np.ptp(triangles.reshape(-1, 3), axis=0)))
+    for _ in range(6):
+        sides = np.linalg.norm(triangles - np.roll(triangles, -1, axis=1), axis=2)
+        long = sides.max(axis=1) > longest
+        if not long.any():
+            break
+        cut, side = triangles[long], np.argmax(sides[long], axis=1)
+        row = np.arange(len(cut))
+        a, b, c = (cut[row, (side + k) % 3] for k in range(3))
+        middle = 0.5 * (a + b)
+        halves = [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
+        triangles = np.concatenate([triangles[~long], *halves])
+    return triangles
 
 
 def _axes_in_space(ax: Axes | None) -> tuple[Figure, Any]:
@@ -139,9 +201,13 @@ def _set_view(ax: Any, problem: Problem, low: Array, high: Array) -> None:  # no
     for k, name in enumerate("xyz"):
         getattr(ax, f"set_{name}lim")(middle[k] - half[k], middle[k] + half[k])
         getattr(ax, f"set_{name}label")(f"{name} [m]")
-    ax.set_box_aspect(half, zoom=1.4)
     along = view_axes(problem)[0]
-    ax.view_init(elev=_ELEVATION, azim=np.degrees(np.arctan2(along[1], along[0])) - _TURN)
+    turn = np.arctan2(along[1], along[0]) - np.radians(_TURN)
+    rise, unit = np.radians(_ELEVATION), half / np.linalg.norm(half)
+    depth = abs(np.cos(turn)) * unit[0] + abs(np.sin(turn)) * unit[1]
+    tall = np.cos(rise) * unit[2] + np.sin(rise) * depth  # half of the height in the picture
+    ax.set_box_aspect(half, zoom=min(1.4, _TALLEST / tall))
+    ax.view_init(elev=_ELEVATION, azim=np.degrees(turn))
     for name, size in zip("xyz", half, strict=True):
         if size < 0.25 * np.max(half):
             getattr(ax, f"{name}axis").set_major_locator(_few_ticks())

@@ -18,6 +18,7 @@ from ffsr_plan.plans.plan_reading import PLAIN, plan_of
 from ffsr_plan.plans.plan_tables import FORMAT
 from ffsr_plan.plans.planner_registry import planner_table
 from ffsr_plan.plans.robot_table import robot_table
+from ffsr_plan.plans.shape_entries import shape_entries
 from ffsr_plan.search.records import Branches, Trails
 
 _LARGEST_FILE = 500_000_000  # [bytes]; reading takes about ten times as much memory
@@ -38,6 +39,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
                 "radii": problem.scene.radii.tolist(),
                 "excess": problem.scene.excess,
                 "sources": [list(source) for source in problem.scene.sources],
+                **shape_entries(problem.scene),
             },
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),

@@ -128,7 +128,15 @@ def _problem(what: str, table: ProblemTable) -> Problem:
     made = _within(
         what,
         "problem.scene",
-        lambda: Scene(scene.centers, scene.radii, scene.excess, scene.sources),
+        lambda: Scene(
+            scene.centers,
+            scene.radii,
+            scene.excess,
+            scene.sources,
+            scene.shapes,
+            scene.keep_in,
+            scene.growth,
+        ),
     )
     return _within(
         what,

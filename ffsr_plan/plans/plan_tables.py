@@ -18,8 +18,10 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, OneOf, Rule, Text, Truth, WholeNumber
 from ffsr_plan.core.settings import from_mapping, settings
 from ffsr_plan.plans.planner_registry import PLANNERS, Planner
+from ffsr_plan.plans.shape_entries import ZONE_KINDS, Bodies
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.collision_shapes import CONTAINERS
+from ffsr_plan.scene.obstacle_shapes import SHAPES
 
 FORMAT = "ffsr-plan/3"
 _LARGEST = 1e300
@@ -155,12 +157,15 @@ class RobotTable:
 
 @settings
 class SceneTable:
-    """Obstacles; files of older versions have neither excess nor sources."""
+    """Obstacles; files of older versions, and of scenes without them, have spheres alone."""
 
     centers: Annotated[Any, Columns((2,))]
     radii: Annotated[Any, Columns()]
     excess: Annotated[float, Number(at_least=0.0)] = 0.0
     sources: Annotated[Any, AnyValue()] = ()
+    shapes: Annotated[Any, Bodies(SHAPES)] = ()
+    keep_in: Annotated[Any, Bodies(ZONE_KINDS)] = ()
+    growth: Annotated[float, Number(at_least=0.0)] = 0.0
 
 
 @settings

@@ -1,4 +1,4 @@
-"""Tables of a scenario file that make obstacles: spheres, files, meshes and generators."""
+"""Tables of a scenario file that make obstacles: spheres, files, meshes, shapes, generators."""
 
 from __future__ import annotations
 
@@ -18,6 +18,15 @@ from ffsr_plan.core.setting_rules import (
     WholeNumber,
 )
 from ffsr_plan.core.settings import settings
+from ffsr_plan.scenario_files.shape_tables import (
+    SHAPE_TABLES,
+    BallTable,
+    BoxTable,
+    CapsuleTable,
+    CylinderTable,
+    EllipsoidTable,
+    HullTable,
+)
 from ffsr_plan.scene import generators
 from ffsr_plan.scene.scene import Scene
 
@@ -99,8 +108,17 @@ class MeshFile:
 
 
 Obstacle = Annotated[
-    Sphere | CsvFile | NumpyFile | MeshFile,
-    ByKey(center=Sphere, csv=CsvFile, numpy=NumpyFile, mesh=MeshFile),
+    Sphere
+    | CsvFile
+    | NumpyFile
+    | MeshFile
+    | BoxTable
+    | BallTable
+    | CapsuleTable
+    | CylinderTable
+    | EllipsoidTable
+    | HullTable,
+    ByKey(center=Sphere, csv=CsvFile, numpy=NumpyFile, mesh=MeshFile, **SHAPE_TABLES),
 ]
 
 

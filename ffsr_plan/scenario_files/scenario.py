@@ -18,6 +18,7 @@ from ffsr_plan.core.text_files import read_text
 from ffsr_plan.plans.planner_registry import Planner
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.scenario_files.scenario_schema import ScenarioFile
+from ffsr_plan.scenario_files.shape_tables import with_names
 from ffsr_plan.scene.scene import Scene
 
 if sys.version_info >= (3, 11):
@@ -168,17 +169,18 @@ def _check_goal(file: ScenarioFile) -> None:
 
 
 def _scene(file: ScenarioFile, folder: Path, ends: Sequence[Array]) -> Scene:
-    """All obstacles; generated ones keep away from base positions `ends` (3,) [m]."""
+    """All obstacles and zones; generated ones keep away from base positions `ends` (3,) [m]."""
     scene = Scene()
     for k, obstacle in enumerate(file.obstacles):
         with _in_table(f"obstacles.{k}"):
             made = obstacle.scene(folder)
+            made = with_names(made, f"obstacles.{k}")
             scene += made if made.sources else made.named(f"obstacles.{k}")
     for name in GENERATORS:
         for k, table in enumerate(getattr(file, name)):
             with _in_table(f"{name}.{k}"):
                 scene += table.scene(ends).named(f"{name}.{k}")
-    return scene
+    return scene + Scene(keep_in=[table.zone for table in file.keep_in])
 
 
 @contextmanager

@@ -36,6 +36,7 @@ from ffsr_plan.scenario_files.obstacle_tables import (
     TrussTable,
 )
 from ffsr_plan.scenario_files.planner_tables import ByPlannerName, PlannerTable
+from ffsr_plan.scenario_files.shape_tables import KeepIn
 from ffsr_plan.scene.scene import Scene
 
 Position = Annotated[Array, Numbers(3, at_most=FARTHEST)]
@@ -245,7 +246,8 @@ class ScenarioFile:
         robot: the robot and the mode.
         start: the start configuration.
         goal: the goal configuration, or the pose of an end effector.
-        obstacles: spheres, files of spheres and meshes.
+        obstacles: spheres, files of spheres, meshes, and convex bodies of other shapes.
+        keep_in: zones, in each of which the whole robot stays.
         clouds: random spheres in a box.
         belts: random spheres in a ring.
         scatters: a few random spheres in the xy-plane.
@@ -265,6 +267,7 @@ class ScenarioFile:
     title: Annotated[str, Text()] = ""
     start: StartTable = field(default_factory=StartTable)
     obstacles: tuple[Obstacle, ...] = ()
+    keep_in: tuple[KeepIn, ...] = ()
     clouds: tuple[CloudTable, ...] = ()
     belts: tuple[BeltTable, ...] = ()
     scatters: tuple[ScatterTable, ...] = ()

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 import ffsr_plan as fp
 
@@ -45,6 +46,8 @@ def calls(plan, tmp_path_factory):
     flight = plan.timed(**FIELDS)
     view = {"port": 0, "open_browser": False}
     ball = {"low": [0, 0, 0], "high": [1, 1, 1], "radii": [0.1, 0.2]}
+    placed = {"position": [0, 0, 0], "attitude": [0, 0, 0], "name": "s"}
+    trimesh.creation.box((1.0, 1.0, 1.0)).export(folder / "box.stl")
     scene.to_csv(folder / "s.csv")
     plan.save(folder / "plan.json")
     np.save(folder / "s.npy", [[0.0, 0.0, 0.0, 1.0]])
@@ -72,7 +75,15 @@ def calls(plan, tmp_path_factory):
                    "name": "p"},
         fp.Mount: {"arm": "ur3", "position": [0, 0, 0], "attitude": [0, 0, 0], "prefix": "a_",
                    "locked": {}, "srdf": None},
-        fp.Scene: {"centers": [[0, 0, 0]], "radii": [1.0], "excess": 0.0},
+        fp.Scene: {"centers": [[0, 0, 0]], "radii": [1.0], "excess": 0.0, "sources": (),
+                   "shapes": (), "keep_in": (), "growth": 0.0},
+        fp.Box: {"size": [1, 1, 1], **placed},
+        fp.Ball: {"radius": 1.0, "position": [0, 0, 0], "name": "b"},
+        fp.Capsule: {"radius": 1.0, "length": 1.0, **placed},
+        fp.Cylinder: {"radius": 1.0, "length": 1.0, **placed},
+        fp.Ellipsoid: {"semi_axes": [1, 1, 1], **placed},
+        fp.Hull: {"points": np.vstack([np.zeros(3), np.eye(3)]), **placed},
+        fp.HalfSpace: {"direction": [1, 0, 0], "position": [0, 0, 0], "name": "h"},
     }  # fmt: skip
     return {
         **settings,
@@ -80,6 +91,7 @@ def calls(plan, tmp_path_factory):
         fp.Scene.from_numpy: {"path": folder / "s.npy"},
         fp.Scene.from_mesh: {"mesh": _Box(), "excess": 0.3, "scale": 1.0, "position": [0, 0, 0],
                              "attitude": [0, 0, 0], "inside": True},
+        fp.Hull.from_mesh: {"mesh": folder / "box.stl", "scale": 1.0, **placed},
         scene.to_csv: {"path": folder / "t.csv"},
         fp.generators.cloud: {"seed": 1, "count": 2, **ball, "spared": ()},
         fp.generators.belt: {"seed": 1, "count": 2, "radius": 3.0, "thickness": 1.0,
@@ -150,8 +162,6 @@ class _Box:
     """A cube, as an object with triangles."""
 
     def __init__(self):
-        import trimesh
-
         self.triangles = trimesh.creation.box((1.0, 1.0, 1.0)).triangles
 
 

@@ -19,6 +19,7 @@ from ffsr_plan.display.flights.flight_samples import (
 )
 from ffsr_plan.display.flights.quantities import QUANTITIES, quantities
 from ffsr_plan.display.path_drawing import (
+    draw_named_zones,
     draw_obstacles,
     draw_silhouettes,
     mark_ends,
@@ -26,6 +27,8 @@ from ffsr_plan.display.path_drawing import (
 )
 from ffsr_plan.display.scenes.picture_data import Quantity, drawn_solid
 from ffsr_plan.display.scenes.projection import view_axes
+from ffsr_plan.display.scenes.shape_outlines import points_of_extent
+from ffsr_plan.display.scenes.zone_outlines import ZONE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,6 +40,7 @@ _STEPS = 800  # of time
 _WIDTH, _PANEL_HEIGHT = 8.0, 1.25  # [inches]
 _SHARE = 0.72  # of the width that axes have beside their legends
 _MOST_NAMED = 8  # curves of a panel that the legend names one by one
+_LETTERS = 20  # of a line in the legend beside the path
 _FAR = 2.5  # peaks above which a limit is not drawn but written
 _LINES = ("-", "--", ":")
 _MARK = "#c9ccd1"  # of the times of silhouettes
@@ -93,6 +97,7 @@ def _own_style(shown: Mapping[str, Quantity]) -> dict[str, tuple[str, str]]:
         "goal": (figure_style.GOAL, "goal"),
         "robot": (figure_style.ROBOT, ""),
         "obstacles": (figure_style.OBSTACLE, ""),
+        "zones": (figure_style.ZONE, ZONE),
         "rests": (figure_style.ROBOT, "rests"),
         "limit": (figure_style.CONTACT, "limit"),
     }
@@ -114,7 +119,8 @@ def _new_figure(
     view = view_axes(flown.problem)[:2]
     solid = drawn_solid(flown.problem.scene, centers)
     scene = flown.problem.scene
-    flat = np.vstack([(centers @ view.T).reshape(-1, 2), scene.centers[solid] @ view.T])
+    balls = scene.centers[solid[: len(scene.radii)]]
+    flat = np.vstack([*centers, balls, points_of_extent(scene)]) @ view.T
     size = np.ptp(flat, axis=0) + 2.0 * max(float(radii.max()), 0.1)
     path_height = float(np.clip(_SHARE * _WIDTH * size[1] / size[0], 1.6, 5.0))
     heights = [path_height + 0.5] + [_PANEL_HEIGHT] * len(names)
@@ -178,6 +184,9 @@ def _draw_path(
             bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75},
         )
     name_directions(ax, problem, "path", leaves_plane=False)
+    draw_named_zones(ax, problem, view, style, _LETTERS)
+    if problem.scene.keep_in:
+        ax.set_anchor("W")  # leaves the room to the legend
     ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.display.scenes.meshcat_objects import CommandLog
 from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames
-from ffsr_plan.display.scenes.scene_objects import add_ends, add_obstacles, set_up
+from ffsr_plan.display.scenes.scene_objects import add_ends, add_obstacles, add_zones, set_up
 from ffsr_plan.display.web.html_template import html_page
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.lattice.layered_lattice import LayeredLattice
@@ -32,8 +32,10 @@ def opening_page(problem: Problem, lattice: LayeredLattice | None, title: str) -
     frames = motion_frames(problem.robot, straight)
     centers, radii = frames.bounding_spheres()
     aside = 0.5 * _farthest_aside(problem, lattice)  # little of the search goes farther out
-    view = set_up(viewer, problem, centers + aside[:, None, None], radii)
+    spread = centers + aside[:, None, None]
+    view = set_up(viewer, problem, spread, radii)
     add_obstacles(viewer["obstacles"], problem.scene, drawn_solid(problem.scene, centers))
+    add_zones(viewer["zones"], problem.scene, spread, radii)
     goal = problem.goal if problem.reach_attitude else straight[-1]
     add_ends(viewer, problem.robot, problem.start, goal)
     space = "the whole space"

@@ -1,4 +1,4 @@
-"""Meshcat objects (solids, instanced spheres, ribbons) and a log of meshcat commands."""
+"""Meshcat objects (solids, meshes, spheres, ribbons, lines) and a log of meshcat commands."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, IntArray
 
 MeshcatNode: TypeAlias = Any
 """A node of meshcat's tree; meshcat has no types."""
@@ -139,6 +139,25 @@ def ribbon(segments: Array, widths: Array, colours: Array, up: Array) -> Meshcat
     return mg.TriangularMeshGeometry(
         corners.reshape(-1, 3), faces, color=np.repeat(colours, 4, axis=0)
     )
+
+
+def triangle_mesh(vertices: Array, faces: IntArray) -> MeshcatObject:
+    """A mesh of triangles, shaded by normals at its vertices.
+
+    Args:
+        vertices: (n, 3) [m].
+        faces: (k, 3) vertices of each triangle, counter-clockwise from outside.
+    """
+    import meshcat.geometry as mg
+
+    return mg.TriangularMeshGeometry(vertices, faces)
+
+
+def lines(segments: Array, material: MeshcatObject) -> MeshcatObject:
+    """Lines one pixel wide along segments (k, 2, 3) [m]."""
+    import meshcat.geometry as mg
+
+    return mg.LineSegments(mg.PointsGeometry(segments.reshape(-1, 3).T), material)
 
 
 def sphere(radius: float, rings: int = 28) -> MeshcatObject:

@@ -12,6 +12,7 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags, frozen
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.scene.obstacle_shapes import placed_axes
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.records import Branches
 
@@ -153,33 +154,40 @@ def branch_segments(branches: Branches, most: int) -> tuple[Array, Array]:
 
 
 def near_track(scene: Scene, positions: Array, within: float) -> Flags:
-    """Spheres that come close to a track.
+    """Spheres and shapes that come close to a track.
 
     Args:
         scene: the obstacles.
         positions: (..., 3) points of the track [m], at least one.
-        within: greatest distance of a point from the surface of a sphere [m].
+        within: greatest distance of a point from the surface of a sphere, or of the box around a
+            shape [m].
 
     Returns:
-        (N,) whether each sphere does.
+        (N + S,) whether each sphere does, then each shape.
     """
     from scipy.spatial import cKDTree
 
-    if not len(scene):
-        return np.zeros(0, dtype=bool)
-    distances, _ = cKDTree(positions.reshape(-1, 3)).query(scene.centers)
-    near: Flags = distances < within + scene.radii
+    points = positions.reshape(-1, 3)
+    near = np.zeros(len(scene.radii) + len(scene.shapes), dtype=bool)
+    if len(scene.radii):
+        distances, _ = cKDTree(points).query(scene.centers)
+        near[: len(distances)] = distances < within + scene.radii
+    for k, shape in enumerate(scene.shapes, start=len(scene.radii)):
+        turn, middle = placed_axes(shape)
+        beyond = np.maximum(np.abs((points - middle) @ turn) - shape.half_sides, 0.0)
+        near[k] = np.linalg.norm(beyond, axis=1).min() < within + shape.skin
     return near
 
 
 def drawn_solid(scene: Scene, positions: Array) -> Flags:
-    """(N,) which obstacles pictures draw solid; the others are faint, so that the robot is visible.
+    """(N + S,) which spheres and shapes pictures draw solid; others are faint and hide no robot.
 
-    Up to 60 obstacles are all drawn solid, of more than that those closer than 0.8 m to one of the
+    Up to 60 of them are all drawn solid, of more than that those closer than 0.8 m to one of the
     points (..., 3) [m], as a rule the middles of the robot's shapes along the motion.
     """
-    if len(scene) <= _SOLID_COUNT:
-        return np.ones(len(scene), dtype=bool)
+    count = len(scene.radii) + len(scene.shapes)
+    if count <= _SOLID_COUNT:
+        return np.ones(count, dtype=bool)
     return near_track(scene, positions, _SOLID_DISTANCE)
 
 

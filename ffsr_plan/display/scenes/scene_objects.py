@@ -1,4 +1,4 @@
-"""Meshcat scene of a problem: light, camera, robot, obstacles, trails and tracks."""
+"""Meshcat scene of a problem: light, camera, robot, obstacles, zones, trails and tracks."""
 
 from __future__ import annotations
 
@@ -9,8 +9,17 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array, Flags
-from ffsr_plan.display.scenes.meshcat_objects import MeshcatNode, instances, ribbon, solids
+from ffsr_plan.display.scenes.meshcat_objects import (
+    MeshcatNode,
+    instances,
+    lines,
+    ribbon,
+    solids,
+    triangle_mesh,
+)
 from ffsr_plan.display.scenes.projection import view_axes, visible_shapes
+from ffsr_plan.display.scenes.shape_outlines import ROUND, joined, mesh_of, points_of_extent
+from ffsr_plan.display.scenes.zone_outlines import dashed, lines_of, sides_of
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
@@ -18,6 +27,7 @@ from ffsr_plan.scene.scene import Scene
 TRACK, TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)  # colours of the base's and the tips' tracks
 _MARGIN = 0.3  # around the scene [m]
 _TRIANGLES = 90_000  # of solid and of faint obstacles each; more obstacles are drawn less round
+_ZONE, _ZONE_LINES = 0x8FA0BF, 0xB9C6DE
 START, GOAL, _OBSTACLE, _FAINT = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
 _GLOW = np.array([(0.14, 0.10, 0.29), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
 
@@ -51,6 +61,7 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
     for sign in (-1.0, 1.0):
         points.append((centers @ axes.T + sign * radii[:, None]).reshape(-1, 3))
         points.append(scene.centers @ axes.T + sign * scene.radii[:, None])
+    points.append(points_of_extent(scene) @ axes.T)
     cloud = np.vstack(points)
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     root = np.eye(4)
@@ -66,16 +77,64 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
 
 
 def add_obstacles(viewer: MeshcatNode, scene: Scene, drawn_solid: Flags) -> None:
-    """Add the spheres of a scene; those that are not `drawn_solid` (N,) are faint."""
+    """Add the spheres and shapes of a scene; those not `drawn_solid` (N + S,) are faint."""
     import meshcat.geometry as mg
 
     solid = mg.MeshPhongMaterial(color=_OBSTACLE, shininess=60)
     faint = mg.MeshPhongMaterial(color=_FAINT, opacity=0.13, depthWrite=False, shininess=10)
+    count = len(scene.radii)
     for name, chosen, material in (("near", drawn_solid, solid), ("far", ~drawn_solid, faint)):
-        if chosen.any():
-            rings = int(np.clip(math.sqrt(_TRIANGLES / np.count_nonzero(chosen) / 3.0), 6, 28))
-            spheres = instances(scene.centers[chosen], scene.radii[chosen], rings, material)
+        balls, bodies = chosen[:count], np.flatnonzero(chosen[count:])
+        if balls.any():
+            rings = int(np.clip(math.sqrt(_TRIANGLES / np.count_nonzero(balls) / 3.0), 6, 28))
+            spheres = instances(scene.centers[balls], scene.radii[balls], rings, material)
             viewer[name].set_object(spheres)
+        if len(bodies):
+            rings = int(np.clip(math.sqrt(_TRIANGLES / len(bodies) / 4.0), 6, ROUND))
+            mesh = joined([mesh_of(scene.shapes[k], rings) for k in bodies])
+            viewer[f"{name}_shapes"].set_object(triangle_mesh(*mesh), material)
+
+
+def shown_box(scene: Scene, centers: Array, radii: Array) -> tuple[Array, Array]:
+    """Least and greatest coordinates (3,) in the world of obstacles, zones that end, and robot [m].
+
+    Args:
+        scene: obstacles and zones.
+        centers: (..., g, 3) as of `set_up`.
+        radii: (g,) likewise.
+    """
+    ends = [(centers + sign * radii[:, None]).reshape(-1, 3) for sign in (-1.0, 1.0)]
+    ends += [scene.centers + sign * scene.radii[:, None] for sign in (-1.0, 1.0)]
+    cloud = np.vstack([*ends, points_of_extent(scene)])
+    return cloud.min(axis=0), cloud.max(axis=0)
+
+
+def add_zones(viewer: MeshcatNode, scene: Scene, centers: Array, radii: Array) -> None:
+    """Add keep-in zones: their sides, hardly visible, and dashed lines along their edges.
+
+    Args:
+        viewer: the node that receives them.
+        scene: has the zones.
+        centers: (..., g, 3) as of `set_up`: planes are drawn about all that is shown.
+        radii: (g,) likewise.
+    """
+    import meshcat.geometry as mg
+
+    if not scene.keep_in:
+        return
+    low, high = shown_box(scene, centers, radii)
+    material = mg.MeshBasicMaterial(
+        color=_ZONE, opacity=0.07, transparent=True, depthWrite=False, side=2
+    )
+    stroke = mg.LineBasicMaterial(color=_ZONE_LINES, opacity=0.8, transparent=True)
+    for k, zone in enumerate(scene.keep_in):
+        sides = sides_of(zone, low, high)
+        if len(sides):
+            corners = sides.reshape(-1, 3)
+            mesh = triangle_mesh(corners, np.arange(len(corners)).reshape(-1, 3))
+            viewer[str(k)]["sides"].set_object(mesh, material)
+            dashes = dashed(lines_of(zone, low, high).segments, float(np.max(high - low)))
+            viewer[str(k)]["edges"].set_object(lines(dashes, stroke))
 
 
 def add_ends(
