@@ -20,7 +20,7 @@ class HalfSpace:
     """The points x with direction . (x - position) <= 0.
 
     Attributes:
-        direction: (3,) out of the half-space, any length but zero; kept as a unit vector.
+        direction: (3,) out of the half-space, of any length but zero.
         position: (3,) a point on its boundary, world [m].
         name: by which errors name it.
     """

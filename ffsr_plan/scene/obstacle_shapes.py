@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, frozen
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, unit_quaternion
+from ffsr_plan.core.checks import FARTHEST, finite_array, number, text, unit_quaternion
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, Numbers, Rule, Text, Vector
@@ -35,10 +35,12 @@ class Attitude(Rule):
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> Array:
         """See `Rule.check`."""
-        if isinstance(value, (list, tuple, np.ndarray)) and len(value) == 3:
-            return frozen(rotations.from_angles(finite_array(what, value, (3,))))
+        given: Any = value
+        rows = isinstance(given, (list, tuple)) or (isinstance(given, np.ndarray) and given.ndim)
+        if rows and len(given) == 3:
+            return frozen(rotations.from_angles(finite_array(what, given, (3,))))
         try:
-            return unit_quaternion(what, value)  # type: ignore[arg-type]
+            return unit_quaternion(what, given)
         except InvalidInput as error:
             allowed = "three ZYX angles [rad], or a unit quaternion (x, y, z, w)"
             raise InvalidInput(error.what, error.value, allowed) from None
@@ -345,7 +347,7 @@ class Hull:
         file = checked_path("mesh", mesh)
         corners = mesh_files.hull_corners(str(file.absolute()), [], "mesh")
         factor = number("scale", scale, above=0.0, at_most=1e9)
-        return cls(factor * corners, position, attitude, name or Path(mesh).name)
+        return cls(factor * corners, position, attitude, text("name", name) or Path(mesh).name)
 
     @cached_property
     def middle(self) -> Array:

@@ -114,9 +114,9 @@ class Scene:
             return self
         names = self.sources or (("the scene", len(self.radii)),) * (len(self.radii) > 0)
         sources = [(f"{name}, grown by {by:g} m", count) for name, count in names]
+        growth = self.growth + by if self.shapes or self.keep_in else 0.0
         return Scene(
-            self.centers, self.radii + by, self.excess, sources, self.shapes, self.keep_in,
-            self.growth + by,
+            self.centers, self.radii + by, self.excess, sources, self.shapes, self.keep_in, growth,
         )  # fmt: skip
 
     @classmethod

@@ -54,7 +54,7 @@ def test_the_optimum_of_a_lattice_is_below_every_colony(robot, shapes):
 
 def test_a_floating_arm_moves_beside_a_satellite():
     robot = fp.load_robot("satellite_ur5")
-    target = fp.Scene.from_urdf("planar_dual_arm", (0.0, 2.5, 0.0))
+    target = fp.Scene.from_urdf("planar_dual_arm", (0.0, 0.0, 3.5))
     goal = robot.configuration(joints={"arm_shoulder_pan_joint": 1.4, "arm_elbow_joint": -0.8})
     plan = fp.plan(fp.Problem(robot, target, robot.neutral(), goal, "free-floating"), until="first")
     assert plan.verify().ok

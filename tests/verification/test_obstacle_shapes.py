@@ -29,7 +29,6 @@ from tests.helpers.placed_shapes import (
 
 EXACT = 1e-9  # [m]
 PAIRS = [(solid, shape) for solid in SOLIDS for shape in SHAPES]
-pairs = pytest.mark.parametrize(("solid", "shape"), PAIRS)
 HERE = np.eye(3), np.zeros(3)
 
 
@@ -46,7 +45,7 @@ def put_apart(solid, turn, place, shape, direction, distance):
     return moved(shape, own + distance * direction - other)
 
 
-@pairs
+@pytest.mark.parametrize(("solid", "shape"), PAIRS)
 def test_bodies_put_at_a_distance_are_at_that_distance(solid, shape):
     rng = np.random.default_rng(PAIRS.index((solid, shape)))
     for _ in range(12):
@@ -60,7 +59,7 @@ def test_bodies_put_at_a_distance_are_at_that_distance(solid, shape):
             assert measured(rng, robot, turn, place, scene_of(placed)) < 1e-12
 
 
-@pairs
+@pytest.mark.parametrize(("solid", "shape"), PAIRS)
 def test_distances_at_any_place_are_those_of_nearest_points(solid, shape):
     rng = np.random.default_rng([1, PAIRS.index((solid, shape))])
     apart = 0
@@ -76,7 +75,7 @@ def test_distances_at_any_place_are_those_of_nearest_points(solid, shape):
     assert apart
 
 
-@pairs
+@pytest.mark.parametrize(("solid", "shape"), PAIRS)
 def test_growth_is_taken_from_every_distance(solid, shape):
     rng = np.random.default_rng([2, PAIRS.index((solid, shape))])
     for _ in range(10):
@@ -92,7 +91,7 @@ def test_growth_is_taken_from_every_distance(solid, shape):
         )  # exact if the cores are apart
 
 
-@pairs
+@pytest.mark.parametrize(("solid", "shape"), PAIRS)
 def test_where_bodies_overlap_no_distance_is_above_the_truth(solid, shape):
     """A ball inside each about its middle is known, and how far their surfaces are beyond."""
     rng = np.random.default_rng([3, PAIRS.index((solid, shape))])
