@@ -72,12 +72,12 @@ def obstacle_name(obstacle: int | str | None, source: str = "") -> str:
         obstacle: number of an obstacle, name of a link, or None.
         source: of the obstacle, as in `Contact`.
     """
-    if obstacle is None:
-        return "no obstacle"
     if isinstance(obstacle, str):
         return f"link '{obstacle}'"
     if isinstance(source, ShapeName):
         return f"the boundary of {source}" if isinstance(source, ZoneName) else str(source)
+    if obstacle is None:
+        return "no obstacle"
     return f"{source} (sphere {obstacle})" if source else f"obstacle {obstacle}"
 
 

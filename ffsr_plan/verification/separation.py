@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.contacts import ShapeName
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.verification.distances.obstacle_arrays import (
     shape_arrays,
@@ -186,7 +187,7 @@ class SampledDistances:
             for k in range(len(scene.keep_in))
         ]
         nearest = int(np.argmin(np.concatenate([to_spheres, to_shapes, *to_zones])))
-        return "an obstacle" if nearest < spheres else scene.source_of(nearest)
+        return ShapeName("an obstacle") if nearest < spheres else scene.source_of(nearest)
 
     def clearances(self, samples: Samples) -> Array:
         """(N,) least distances of any shape to an obstacle [m]; infinite without obstacles."""

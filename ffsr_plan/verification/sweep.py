@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
+from ffsr_plan.core.contacts import ShapeName
 from ffsr_plan.verification.motion_samples import Course, Samples
 from ffsr_plan.verification.separation import SampledDistances
 from ffsr_plan.verification.urdf_reading import Bodies
@@ -69,7 +70,7 @@ class Swept:
 
     def __init__(self, edges: int) -> None:
         self.clearance: Place | None = None
-        self.obstacle = "an obstacle"
+        self.obstacle: str = ShapeName("an obstacle")
         self.separation: Place | None = None
         self.clearance_bound = np.inf
         self.hidden: list[Place | None] = [None, None]

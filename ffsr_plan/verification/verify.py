@@ -22,7 +22,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import whole_number
-from ffsr_plan.core.contacts import approach
+from ffsr_plan.core.contacts import encounter
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.momentum_residual import momentum_residual, wheel_momentum_error
 from ffsr_plan.verification.motion_samples import Sampler
@@ -208,7 +208,7 @@ def collisions(proven: float, swept: Swept, motion: str = "plan", part: str = "e
     if swept.clearance is not None:
         least, edge, names = swept.clearance
         if least <= 0.0:
-            what = f"{approach(least)} {swept.obstacle}"
+            what = encounter(least, None, swept.obstacle)
             problems.append(f"link '{names[0]}' {what} on {part} {edge}")
     if swept.separation is not None and swept.separation.value <= 0.0:
         _, edge, names = swept.separation

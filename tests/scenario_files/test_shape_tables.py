@@ -73,7 +73,7 @@ def test_each_key_makes_the_shape_that_it_names(tmp_path):
 def test_errors_name_a_shape_by_its_table(tmp_path):
     scene = scene_of(BODIES, tmp_path)
     assert scene.source_of(2) == "ball 'obstacles.2'"
-    assert scene.source_of(len(scene) - 1) == "the outside of half-space (keep_in.2)"
+    assert scene.source_of(len(scene) - 1) == "half-space (keep_in.2)"
 
 
 def test_a_hull_comes_from_a_mesh_beside_the_scenario(tmp_path, monkeypatch):

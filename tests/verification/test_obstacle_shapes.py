@@ -224,5 +224,5 @@ def test_the_nearest_obstacle_is_named():
         "an obstacle",
         "box 'bus'",
         "cylinder (shapes.1)",
-        "the outside of ball 'sphere of approach'",
+        "ball 'sphere of approach'",
     ]
