@@ -81,6 +81,7 @@ if TYPE_CHECKING:
     from ffsr_plan.scenario_files.scenario import Scenario, load_scenario
     from ffsr_plan.scene import generators
     from ffsr_plan.scene.keep_in_zones import HalfSpace
+    from ffsr_plan.scene.mesh_hulls import mesh_hulls
     from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
     from ffsr_plan.scene.scene import Scene
     from ffsr_plan.search.ants.ant_system import AntSystem
@@ -197,6 +198,7 @@ __all__ = [
     "inverse_kinematics",
     "load_robot",
     "load_scenario",
+    "mesh_hulls",
     "momentum",
     "plan",
     "refine",
@@ -267,6 +269,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "satellites.composition": ("Mount", "compose"),
     "scenario_files.scenario": ("Scenario", "load_scenario"),
     "scene.keep_in_zones": ("HalfSpace",),
+    "scene.mesh_hulls": ("mesh_hulls",),
     "scene.obstacle_shapes": ("Ball", "Box", "Capsule", "Cylinder", "Ellipsoid", "Hull"),
     "scene.scene": ("Scene",),
     "search.ants.ant_system": ("AntSystem",),

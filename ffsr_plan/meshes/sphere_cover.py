@@ -69,7 +69,7 @@ def cover(triangles: Array, excess: float, inside: bool, where: str = "mesh") ->
     if edge <= 0.0 or np.prod((high - low) / edge + 3.0) > MOST_CUBES:
         raise InvalidInput(f"{where}, excess", excess, f"about {least:.2g} m or more for its size")
     if inside:
-        _check_closed(triangles, where)
+        check_closed(triangles, where)
     origin = low - 1.5 * edge  # an empty layer all around; flat sides pass through cube centres
     counts = np.ceil((high - origin) / edge + 1.0).astype(np.int64)
     surface = np.zeros(counts, dtype=bool)
@@ -82,7 +82,7 @@ def cover(triangles: Array, excess: float, inside: bool, where: str = "mesh") ->
     return Cover(np.vstack(centers), np.concatenate(radii))
 
 
-def _check_closed(triangles: Array, where: str) -> None:
+def check_closed(triangles: Array, where: str) -> None:
     """Check that the surface is closed, so that its winding numbers are integers.
 
     The triangles must pass every edge as often in one direction as in the other. The properties
