@@ -11,6 +11,7 @@ from ffsr_plan.core.arrays import records
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.course import course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
+from ffsr_plan.proof.interval_halving import certify
 from ffsr_plan.proof.kernels.course import measure, memory_for, place_shapes, travel_of_shapes
 from ffsr_plan.proof.kernels.edge_proof import (
     EDGE,
@@ -102,7 +103,8 @@ def test_decisions_are_verdicts_of_the_proof_by_coal(seed, mode):
     prove(course, prover.speeds, found, prover.rounding, 1e-4, memory, halving)
     exact = bool(robot.primitives.exact.all())
     for k, state in enumerate(found["state"]):
-        verdict = prover.certify(int(layers[k]), tails[k], heads[k], tuple(ends[k]))
+        edge = prover.obstacle_edge(int(layers[k]), tails[k], heads[k])
+        verdict = certify(edge, tuple(ends[k]), 1e-4)
         if state == PROVEN:
             assert verdict.free
         if state == TOUCHED and exact:
