@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.formatting import counted, html_table
+from ffsr_plan.core.formatting import html_table
 from ffsr_plan.core.rotations import angle_between, rotation_vector, to_angles
 from ffsr_plan.core.setting_rules import InstanceOf, Number, Truth, Vector
 from ffsr_plan.core.settings import Given, setting, settings
@@ -351,7 +351,7 @@ class Problem:
         return [
             ("robot", self.robot.name),
             ("mode", str(self.mode)),
-            ("obstacles", counted(len(self.scene), "obstacle")),
+            ("obstacles", self.scene.contents),
             ("lattice", "none" if self.lattice is None else self.lattice.summary),
             ("delta", f"{self.delta:g}"),
             ("length_unit", f"{self.length_unit:g} m"),

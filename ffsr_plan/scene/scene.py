@@ -314,17 +314,18 @@ class Scene:
 
     def __repr__(self) -> str:
         extent = self._extent()
-        return f"Scene({self._contents()}{extent and ', '}{extent})"
+        return f"Scene({self.contents}{extent and ', '}{extent})"
 
     def _repr_html_(self) -> str:
         rows = {"spheres": str(len(self.radii)), "extent": self._extent() or "empty"}
         if self.shapes or self.keep_in:
-            rows = {"obstacles": self._contents(), **rows}
+            rows = {"obstacles": self.contents, **rows}
         if self.excess:
             rows["excess"] = f"{self.excess:g} m"
         return html_table("Scene", rows)
 
-    def _contents(self) -> str:
+    @property
+    def contents(self) -> str:
         """How many obstacles of each kind there are."""
         words = Counter(shape.word for shape in self.shapes)
         parts = [counted(len(self.radii), "sphere")] * bool(len(self.radii) or not self.shapes)
