@@ -7,6 +7,8 @@ counts as zero, which is not below the truth: it is blocked, and nothing else is
 
 from __future__ import annotations
 
+from itertools import product
+
 import coal
 import numpy as np
 
@@ -56,6 +58,9 @@ class CoalMeasures:
 
     Obstacles are told by their rows, see `distance_to_obstacle`. It contains scratch data: every
     thread needs its own.
+
+    Attributes:
+        spheres_only: whether all obstacles are spheres.
     """
 
     def __init__(self, robot: SpaceRobot, scene: Scene) -> None:
@@ -76,7 +81,10 @@ class CoalMeasures:
         self._result = coal.DistanceResult()
         self._in_shape = coal.Transform3s.Identity(), coal.Transform3s.Identity()
         self._in_world = coal.Transform3s.Identity()
-        self._spheres_only = not scene.shapes and not scene.keep_in
+        self.spheres_only = not scene.shapes and not scene.keep_in
+        self._corners = [
+            self._corners_of(k) for k in range(len(self._solids) * bool(scene.keep_in))
+        ]
 
     def to_spheres(self, shapes: list[int], radii: list[float], centers: Array) -> list[float]:
         """Distances of shapes to spheres whose centres are in the frames of the shapes.
@@ -105,7 +113,7 @@ class CoalMeasures:
         Args:
             row: of the obstacle.
         """
-        if self._spheres_only:
+        if self.spheres_only:
             return True
         tree = self._tree
         return row < len(tree.spheres) and (len(tree.solid) == 0 or int(tree.solid[row]) < 0)
@@ -160,16 +168,8 @@ class CoalMeasures:
     ) -> tuple[float, Array]:
         """Distance of a shape to the outside of a zone, and its gradient."""
         tree, place = self._tree, row - len(self._tree.spheres)
-        solid, size = self._solids[shape], self._shapes.sizes[shape]
-        if isinstance(solid, coal.Convex):
-            points = np.array([solid.point(k) for k in range(solid.num_points)])
-            skin = 0.0
-        elif self._shapes.kinds[shape] == BOX:
-            signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-            points, skin = signs * size, 0.0
-        else:
-            points, skin = np.array([[0.0, 0.0, -size[1]], [0.0, 0.0, size[1]]]), float(size[0])
-        points = points @ rotation.T + position
+        corners, skin = self._corners[shape]
+        points = corners @ rotation.T + position
         if place < len(tree.planes):
             plane = tree.planes[place]
             room = plane[3] - points @ plane[:3]
@@ -180,3 +180,12 @@ class CoalMeasures:
         far = int(np.argmax(reach))
         gradient = -away[far] / reach[far] if reach[far] > 0.0 else np.zeros(3)
         return float(ball[3] - reach[far]) - skin, gradient
+
+    def _corners_of(self, shape: int) -> tuple[Array, float]:
+        """Corners (n, 3) of a shape of the robot in its frame, and its radius around them [m]."""
+        solid, size = self._solids[shape], self._shapes.sizes[shape]
+        if isinstance(solid, coal.Convex):
+            return np.array([solid.point(k) for k in range(solid.num_points)]), 0.0
+        if self._shapes.kinds[shape] == BOX:
+            return np.array(list(product((-1.0, 1.0), repeat=3))) * size, 0.0
+        return np.array([[0.0, 0.0, -size[1]], [0.0, 0.0, size[1]]]), float(size[0])

@@ -249,7 +249,7 @@ class ObstacleQuery:
         shifts (n, 3) in `where` are those of the robot.
         """
         measures, tree = self._measures, self._tree
-        if not len(tree.solid) and not len(tree.planes) and not len(tree.balls):
+        if measures.spheres_only:
             radii = tree.spheres[row, 3].tolist()
             return np.array(measures.to_spheres(shape.tolist(), radii, local))
         found = np.empty(len(shape))

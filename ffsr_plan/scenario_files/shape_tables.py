@@ -206,4 +206,4 @@ def with_names(scene: Scene, name: str) -> Scene:
         name: such as that of a table of the scenario file.
     """
     shapes = [each if each.name else replace(each, name=name) for each in scene.shapes]  # type: ignore[type-var]
-    return Scene(scene.centers, scene.radii, scene.excess, scene.sources, shapes, scene.keep_in)
+    return replace(scene, shapes=tuple(shapes))
