@@ -1,0 +1,133 @@
+"""A body that moves: its shapes, and its motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ffsr_plan.bodies.body_motion import BodyMotion, Drift, Poses, Spin
+from ffsr_plan.bodies.track import Track
+from ffsr_plan.bodies.tumble import Tumble
+from ffsr_plan.core import rotations
+from ffsr_plan.core.arrays import Array, content, frozen
+from ffsr_plan.core.checks import FARTHEST, finite_array, text
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import counted
+from ffsr_plan.scene.obstacle_shapes import Attitude, ObstacleShape
+from ffsr_plan.scene.scene import Scene
+
+MOTIONS = (Drift, Spin, Tumble, Track)
+"""Classes of motions."""
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class MovingBody:
+    """A rigid body that moves among the obstacles at rest. Bodies do not see one another.
+
+    Attributes:
+        scene: its shapes in its own axes; the origin is its reference point, which of a `Tumble` is
+            the centre of mass.
+        motion: how it moves.
+        position: (3,) of its reference point at time zero, world [m]; zeros with a `Track`.
+        attitude: (4,) of its axes at time zero (xyzw); the world's with a `Track`.
+        name: by which errors name it.
+    """
+
+    scene: Scene
+    motion: BodyMotion
+    position: Array
+    attitude: Array
+    name: str
+
+    def __init__(
+        self,
+        shapes: Scene | Sequence[ObstacleShape],
+        motion: BodyMotion,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        attitude: ArrayLike = (0.0, 0.0, 0.0),
+        name: str = "",
+    ) -> None:
+        """Check the body.
+
+        Args:
+            shapes: placed along its own axes, or a scene of them, which may hold spheres too.
+            motion: `Drift`, `Spin`, `Tumble` or `Track`.
+            position: (3,) of its reference point at time zero, world [m].
+            attitude: of its axes at time zero: (3,) ZYX angles [rad], or (4,) quaternion (xyzw).
+            name: by which errors name it.
+
+        Raises:
+            InvalidInput: no shapes or motion, a zone among the shapes, or a pose with a `Track`.
+        """
+        scene = shapes if isinstance(shapes, Scene) else Scene(shapes=shapes)
+        if not len(scene) or scene.keep_in:
+            raise InvalidInput("shapes", shapes, "at least one shape or sphere, and no zone")
+        if not isinstance(motion, MOTIONS):
+            names = ", ".join(each.__name__ for each in MOTIONS)
+            raise InvalidInput("motion", motion, f"an object of {names}")
+        place = finite_array("position", position, (3,), FARTHEST)
+        turn = Attitude().check("attitude", attitude, {})
+        absolute = isinstance(motion, Track)
+        if absolute and (np.any(place != 0.0) or abs(float(turn[3])) < 1.0):
+            raise InvalidInput("position", place.tolist(), "no pose: the table of a Track has it")
+        object.__setattr__(self, "scene", scene)
+        object.__setattr__(self, "motion", motion)
+        object.__setattr__(self, "position", frozen(np.array(place)))
+        object.__setattr__(self, "attitude", frozen(np.array(turn)))
+        object.__setattr__(self, "name", text("name", name))
+
+    def poses(self, times: ArrayLike) -> Poses:
+        """Poses in the world.
+
+        Args:
+            times: (n,) [s], from zero to `motion.known_until`.
+
+        Raises:
+            InvalidInput: a time that the motion does not know.
+        """
+        given = finite_array("times", times, (-1,))
+        if np.any((given < 0.0) | (given > self.motion.known_until)):
+            allowed = f"times from 0 to {self.motion.known_until:g} s"
+            raise InvalidInput("times", given.tolist(), allowed)
+        moved = self.motion.poses(np.asarray(given))
+        if isinstance(self.motion, Track):
+            return moved
+        start = np.tile(self.attitude, (len(given), 1))
+        return Poses(self.position + moved.positions, rotations.multiply(start, moved.attitudes))
+
+    @cached_property
+    def reach(self) -> float:
+        """Bound on the distance of its points from the reference point, or from the axis [m]."""
+        spheres = self.scene.tree.spheres
+        middles, axis = spheres[:, :3], self.motion.axis
+        apart = middles if axis is None else np.cross(middles, axis)
+        return float(np.max(np.linalg.norm(apart, axis=1) + spheres[:, 3]))
+
+    def travel(self, begin: float, end: float) -> float:
+        """Bound on the way of any of its points between two times [m].
+
+        Args:
+            begin: [s].
+            end: [s].
+        """
+        return self.motion.path(begin, end) + self.motion.turned(begin, end) * self.reach
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, MovingBody):
+            return NotImplemented
+        return self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> object:
+        return content((self.scene, self.motion, self.position, self.attitude, self.name))
+
+    def __repr__(self) -> str:
+        name = f"{self.name!r}, " if self.name else ""
+        count = counted(len(self.scene), "shape")
+        return f"MovingBody({name}{count}, {type(self.motion).__name__})"

@@ -1,0 +1,122 @@
+"""Proofs past bodies that move."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import ffsr_plan as fp
+from ffsr_plan.bodies.body_edge import BodyEdge
+from ffsr_plan.bodies.body_motion import Drift, Spin
+from ffsr_plan.bodies.moving_body import MovingBody
+from ffsr_plan.bodies.track import Track
+from ffsr_plan.bodies.tumble import Tumble
+from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.dynamics.motion import Motion
+from ffsr_plan.proof.edge_travel import EdgeTravel
+from ffsr_plan.proof.interval_halving import ROUNDING, certify
+from ffsr_plan.proof.motion_edges import NominalPlacements
+
+STILL = np.zeros(3)
+SHAPES = [fp.Box((0.6, 1.6, 0.02)), fp.Capsule(0.1, 0.8, (0.3, 0.0, 0.2))]
+
+
+def body(rng, kind, place):
+    """A body of two shapes somewhere, that moves."""
+    angles = rng.uniform(-3.0, 3.0, 3)
+    if kind == "drift":
+        return MovingBody(SHAPES, Drift(rng.normal(size=3) * 0.05), place, angles)
+    if kind == "spin":
+        return MovingBody(SHAPES, Spin(rng.normal(size=3) * 0.1, (0.01, 0.0, 0.0)), place, angles)
+    if kind == "tumble":
+        motion = Tumble((1.0, 1.7, 2.2), rng.normal(size=3) * 0.1, known_until=60.0)
+        return MovingBody(SHAPES, motion, place, angles)
+    turns = Rotation.from_rotvec(np.cumsum(rng.normal(size=(7, 3)) * 0.1, axis=0)).as_quat()
+    track = place + np.cumsum(rng.normal(size=(7, 3)) * 0.1, axis=0)
+    return MovingBody(SHAPES, Track(np.arange(7) * 10.0, track, turns))
+
+
+def edge_past(moving, motion, times):
+    query = ObstacleQuery(motion.robot, moving.scene)
+    step = np.array(motion.positions[1] - motion.positions[0])
+    return BodyEdge(
+        moving, query, NominalPlacements(motion), EdgeTravel(motion), 0, (STILL, STILL), step,
+        times, ROUNDING,
+    )  # fmt: skip
+
+
+def sampled(moving, motion, times, count=400):
+    """Distances from the shapes where they are in the world, one scene an instant."""
+    shares = np.linspace(0.0, 1.0, count + 1)
+    q = motion.at(np.zeros(count + 1, dtype=np.int64), shares)
+    poses = moving.poses(times[0] + shares * (times[1] - times[0]))
+    least = []
+    for row, place, attitude in zip(q, poses.positions, poses.attitudes, strict=True):
+        turn = Rotation.from_quat(np.array(attitude))
+        here = [
+            type(shape)(
+                *([shape.size] if isinstance(shape, fp.Box) else [shape.radius, shape.length]),
+                place + turn.apply(np.array(shape.position)),
+                (turn * Rotation.from_quat(np.array(shape.attitude))).as_quat(),
+            )
+            for shape in SHAPES
+        ]
+        least.append(fp.clearance(motion.robot, fp.Scene(shapes=here), row))
+    return np.array(least)
+
+
+@pytest.mark.parametrize("kind", ["drift", "spin", "tumble", "track"])
+def test_no_edge_that_a_moving_body_touches_is_proven_free(kind):
+    robot, counts = fp.load_robot("planar_dual_arm"), np.zeros(3, dtype=int)
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        begin = robot.configuration(rng.uniform(-0.5, 0.5, 3))
+        joints = dict(zip(robot.joint_names, rng.uniform(-0.5, 0.5, robot.nd), strict=True))
+        end = robot.configuration(rng.uniform(-0.5, 0.5, 3), joints=joints)
+        motion = Motion(robot, "free-flying", begin, end, np.stack([begin[:3], end[:3]]))
+        moving = body(rng, kind, rng.normal(size=3) * 0.9)
+        start = rng.uniform(0.0, 40.0)
+        times = start, start + rng.uniform(0.5, 15.0)
+        edge = edge_past(moving, motion, times)
+        ends = edge.clearance(0.0), edge.clearance(1.0)
+        least = sampled(moving, motion, times)
+        assert ends == pytest.approx((least[0], least[-1]), abs=1e-8)
+        free = min(ends) > 0.0 and certify(edge, ends, 1e-4).free
+        assert not (free and np.min(least) <= 0.0)
+        assert free or np.min(least) < 2e-3
+        counts += [free, not free, free and edge.speed > sum(ends)]
+    assert counts[0] >= 2
+    assert counts[1] >= 1
+
+
+@pytest.mark.parametrize("kind", ["drift", "spin", "tumble", "track"])
+def test_clearances_change_by_no_more_than_both_travel(kind):
+    robot, rng = fp.load_robot("planar_dual_arm"), np.random.default_rng(1)
+    begin = robot.neutral()
+    end = robot.configuration((0.4, 0.2, 0.0), joints={"left_1": 0.7})
+    motion = Motion(robot, "free-flying", begin, end, np.stack([begin[:3], end[:3]]))
+    shares = []
+    for _ in range(12):
+        moving = body(rng, kind, rng.normal(size=3) * 2.0)
+        edge = edge_past(moving, motion, (2.0, 20.0))
+        for _ in range(6):
+            a, b = np.sort(rng.uniform(0.0, 1.0, 2))
+            change = abs(edge.clearance(b) - edge.clearance(a))
+            bound = float(np.max(edge.travel(a, b)))
+            assert change <= bound + 1e-8
+            shares.append(change / bound)
+    assert max(shares) > 0.3
+
+
+def test_a_body_without_shapes_or_with_a_zone_or_two_poses_is_refused():
+    with pytest.raises(InvalidInput, match="shapes"):
+        MovingBody([], Drift())
+    with pytest.raises(InvalidInput, match="no zone"):
+        MovingBody(fp.Scene(shapes=SHAPES, keep_in=[fp.Ball(3.0)]), Drift())
+    with pytest.raises(InvalidInput, match="motion"):
+        MovingBody(SHAPES, "fast")
+    track = Track([0.0, 1.0], np.zeros((2, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (2, 1)))
+    with pytest.raises(InvalidInput, match="the table of a Track has it"):
+        MovingBody(SHAPES, track, (1.0, 0.0, 0.0))
+    with pytest.raises(InvalidInput, match="from 0 to 1 s"):
+        MovingBody(SHAPES, track).poses([2.0])
