@@ -80,10 +80,10 @@ if TYPE_CHECKING:
     from ffsr_plan.satellites.composition import Mount, compose
     from ffsr_plan.scenario_files.scenario import Scenario, load_scenario
     from ffsr_plan.scene import generators
-    from ffsr_plan.scene.keep_in_zones import HalfSpace
-    from ffsr_plan.scene.mesh_hulls import mesh_hulls
-    from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
     from ffsr_plan.scene.scene import Scene
+    from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+    from ffsr_plan.scene.shapes.mesh_hulls import mesh_hulls
+    from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
     from ffsr_plan.search.ants.ant_system import AntSystem
     from ffsr_plan.search.ants.max_min import MaxMinAntSystem
     from ffsr_plan.search.fuel_figures import FuelFigures
@@ -268,9 +268,9 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "satellites.bus": ("Bus", "Panel"),
     "satellites.composition": ("Mount", "compose"),
     "scenario_files.scenario": ("Scenario", "load_scenario"),
-    "scene.keep_in_zones": ("HalfSpace",),
-    "scene.mesh_hulls": ("mesh_hulls",),
-    "scene.obstacle_shapes": ("Ball", "Box", "Capsule", "Cylinder", "Ellipsoid", "Hull"),
+    "scene.shapes.keep_in_zones": ("HalfSpace",),
+    "scene.shapes.mesh_hulls": ("mesh_hulls",),
+    "scene.shapes.obstacle_shapes": ("Ball", "Box", "Capsule", "Cylinder", "Ellipsoid", "Hull"),
     "scene.scene": ("Scene",),
     "search.ants.ant_system": ("AntSystem",),
     "search.ants.max_min": ("MaxMinAntSystem",),

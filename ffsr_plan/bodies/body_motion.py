@@ -9,7 +9,7 @@ then travels at most by the path and r times the angle.
 from __future__ import annotations
 
 import math
-from typing import Annotated, NamedTuple, Protocol
+from typing import Annotated, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
@@ -35,7 +35,13 @@ class Poses(NamedTuple):
 
 
 class BodyMotion(Protocol):
-    """A motion of a body from time zero on."""
+    """A motion of a body from time zero on.
+
+    Attributes:
+        tells_world_poses: whether its poses are in the world, and not relative to time zero.
+    """
+
+    tells_world_poses: ClassVar[bool]
 
     @property
     def axis(self) -> Array | None:
@@ -71,6 +77,8 @@ class Drift:
         velocity: (3,) world axes [m/s].
     """
 
+    tells_world_poses: ClassVar[bool] = False
+
     velocity: Annotated[Vector, Numbers(3, FARTHEST)] = setting(default=_STILL)
 
     @property
@@ -105,6 +113,8 @@ class Spin:
         rate: (3,) angular velocity in the body's axes [rad/s].
         velocity: (3,) of the reference point, world axes [m/s].
     """
+
+    tells_world_poses: ClassVar[bool] = False
 
     rate: Annotated[Vector, Numbers(3, FARTHEST)]
     velocity: Annotated[Vector, Numbers(3, FARTHEST)] = setting(default=_STILL)

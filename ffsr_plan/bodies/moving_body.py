@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.bodies.body_motion import BodyMotion, Drift, Poses, Spin
+from ffsr_plan.bodies.pose_function import PoseFunction
 from ffsr_plan.bodies.track import Track
 from ffsr_plan.bodies.tumble import Tumble
 from ffsr_plan.core import rotations
@@ -17,10 +19,10 @@ from ffsr_plan.core.arrays import Array, content, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, text
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted
-from ffsr_plan.scene.obstacle_shapes import Attitude, ObstacleShape
-from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.obstacle_shapes import SHAPES, Attitude, Ball, ObstacleShape
+from ffsr_plan.scene.shapes.obstacle_tree import bounding_spheres
 
-MOTIONS = (Drift, Spin, Tumble, Track)
+MOTIONS = (Drift, Spin, Tumble, Track, PoseFunction)
 """Classes of motions."""
 
 
@@ -29,15 +31,18 @@ class MovingBody:
     """A rigid body that moves among the obstacles at rest. Bodies do not see one another.
 
     Attributes:
-        scene: its shapes in its own axes; the origin is its reference point, which of a `Tumble` is
-            the centre of mass.
+        shapes: its shapes, placed along its own axes; their origin is its reference point, which of
+            a `Tumble` is the centre of mass.
         motion: how it moves.
-        position: (3,) of its reference point at time zero, world [m]; zeros with a `Track`.
-        attitude: (4,) of its axes at time zero (xyzw); the world's with a `Track`.
+        position: (3,) of its reference point at time zero, world [m]; zeros where the motion tells
+            poses in the world, as `Track` and `PoseFunction` do.
+        attitude: (4,) of its axes at time zero (xyzw); the world's where the motion tells it.
         name: by which errors name it.
     """
 
-    scene: Scene
+    word: ClassVar[str] = "moving body"
+
+    shapes: tuple[ObstacleShape, ...]
     motion: BodyMotion
     position: Array
     attitude: Array
@@ -45,7 +50,7 @@ class MovingBody:
 
     def __init__(
         self,
-        shapes: Scene | Sequence[ObstacleShape],
+        shapes: Sequence[ObstacleShape],
         motion: BodyMotion,
         position: ArrayLike = (0.0, 0.0, 0.0),
         attitude: ArrayLike = (0.0, 0.0, 0.0),
@@ -54,27 +59,30 @@ class MovingBody:
         """Check the body.
 
         Args:
-            shapes: placed along its own axes, or a scene of them, which may hold spheres too.
-            motion: `Drift`, `Spin`, `Tumble` or `Track`.
+            shapes: `Box`, `Ball`, `Capsule`, `Cylinder`, `Ellipsoid` or `Hull`, along its own axes.
+            motion: `Drift`, `Spin`, `Tumble`, `Track` or `PoseFunction`.
             position: (3,) of its reference point at time zero, world [m].
             attitude: of its axes at time zero: (3,) ZYX angles [rad], or (4,) quaternion (xyzw).
             name: by which errors name it.
 
         Raises:
-            InvalidInput: no shapes or motion, a zone among the shapes, or a pose with a `Track`.
+            InvalidInput: no shapes or motion, or a pose where the motion tells it.
         """
-        scene = shapes if isinstance(shapes, Scene) else Scene(shapes=shapes)
-        if not len(scene) or scene.keep_in:
-            raise InvalidInput("shapes", shapes, "at least one shape or sphere, and no zone")
+        kinds = ", ".join(each.__name__ for each in SHAPES.values())
+        if not isinstance(shapes, (list, tuple)) or not shapes:
+            raise InvalidInput("shapes", shapes, f"a list of {kinds}")
+        for k, shape in enumerate(shapes):
+            if not isinstance(shape, tuple(SHAPES.values())):
+                raise InvalidInput(f"shapes.{k}", shape, f"an object of {kinds}")
         if not isinstance(motion, MOTIONS):
             names = ", ".join(each.__name__ for each in MOTIONS)
             raise InvalidInput("motion", motion, f"an object of {names}")
         place = finite_array("position", position, (3,), FARTHEST)
         turn = Attitude().check("attitude", attitude, {})
-        absolute = isinstance(motion, Track)
-        if absolute and (np.any(place != 0.0) or abs(float(turn[3])) < 1.0):
-            raise InvalidInput("position", place.tolist(), "no pose: the table of a Track has it")
-        object.__setattr__(self, "scene", scene)
+        if motion.tells_world_poses and (np.any(place != 0.0) or abs(float(turn[3])) < 1.0):
+            what = type(motion).__name__
+            raise InvalidInput("position", place.tolist(), f"no pose: the {what} tells it")
+        object.__setattr__(self, "shapes", tuple(shapes))
         object.__setattr__(self, "motion", motion)
         object.__setattr__(self, "position", frozen(np.array(place)))
         object.__setattr__(self, "attitude", frozen(np.array(turn)))
@@ -94,16 +102,33 @@ class MovingBody:
             allowed = f"times from 0 to {self.motion.known_until:g} s"
             raise InvalidInput("times", given.tolist(), allowed)
         moved = self.motion.poses(np.asarray(given))
-        if isinstance(self.motion, Track):
+        if self.motion.tells_world_poses:
             return moved
         start = np.tile(self.attitude, (len(given), 1))
         return Poses(self.position + moved.positions, rotations.multiply(start, moved.attitudes))
 
+    def shapes_at(self, time: float, title: str = "") -> tuple[ObstacleShape, ...]:
+        """Its shapes in the world at a time, named after it.
+
+        Args:
+            time: [s].
+            title: its name where it has none.
+        """
+        (place,), (turn,) = self.poses([time])
+        axes, own, placed = rotations.matrix(turn), self.name or title, []
+        for shape in self.shapes:
+            name = f"{own}, {shape.name}" if shape.name else own
+            where = {"position": place + axes @ shape.position, "name": name}
+            if not isinstance(shape, Ball):
+                where["attitude"] = rotations.multiply(turn, shape.attitude)
+            placed.append(replace(shape, **where))  # type: ignore[type-var]
+        return tuple(placed)
+
     @cached_property
     def reach(self) -> float:
         """Bound on the distance of its points from the reference point, or from the axis [m]."""
-        spheres = self.scene.tree.spheres
-        middles, axis = spheres[:, :3], self.motion.axis
+        spheres, axis = bounding_spheres(self.shapes), self.motion.axis
+        middles = spheres[:, :3]
         apart = middles if axis is None else np.cross(middles, axis)
         return float(np.max(np.linalg.norm(apart, axis=1) + spheres[:, 3]))
 
@@ -125,9 +150,9 @@ class MovingBody:
         return hash(self._content())
 
     def _content(self) -> object:
-        return content((self.scene, self.motion, self.position, self.attitude, self.name))
+        return content((self.shapes, self.motion, self.position, self.attitude, self.name))
 
     def __repr__(self) -> str:
         name = f"{self.name!r}, " if self.name else ""
-        count = counted(len(self.scene), "shape")
+        count = counted(len(self.shapes), "shape")
         return f"MovingBody({name}{count}, {type(self.motion).__name__})"

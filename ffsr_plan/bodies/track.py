@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -82,6 +82,8 @@ class Track:
         positions: (n, 3) of the reference point, world axes [m].
         attitudes: (n, 4) of the body's axes in the world (xyzw).
     """
+
+    tells_world_poses: ClassVar[bool] = True
 
     times: Annotated[Vector, Times()]
     positions: Annotated[Vector, Rows(3)]

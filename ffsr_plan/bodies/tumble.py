@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -64,6 +64,8 @@ class Tumble:
         velocity: (3,) of the centre of mass, world axes [m/s].
         known_until: time up to which it is integrated [s].
     """
+
+    tells_world_poses: ClassVar[bool] = False
 
     inertia: Annotated[Vector, Inertia()]
     rate: Annotated[Vector, Numbers(3, FARTHEST)]

@@ -18,7 +18,8 @@ from ffsr_plan.meshes.mesh_files import hull
 from ffsr_plan.robots.collision_shapes import convex, sharpen
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.shape_arrays import BOX
-from ffsr_plan.scene.obstacle_shapes import (
+from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.obstacle_shapes import (
     Ball,
     Box,
     Capsule,
@@ -27,9 +28,24 @@ from ffsr_plan.scene.obstacle_shapes import (
     Hull,
     ObstacleShape,
 )
-from ffsr_plan.scene.scene import Scene
 
 _ROUND_FACES = (Cylinder, Ellipsoid)
+ITERATION_ERROR = 1e-7
+"""[m] for distances that Coal iterates to 1e-8."""
+_RELATIVE_ITERATION_ERROR = 4e-9  # for each metre between the centres of the two shapes
+
+
+def iteration_error(robot: SpaceRobot, scene: Scene) -> float:
+    """Bound on the error of distances that Coal iterates [m]; zero where none is.
+
+    Args:
+        robot: the robot.
+        scene: the obstacles.
+    """
+    if bool(robot.primitives.exact.all()) and scene.is_closed_form:
+        return 0.0
+    largest = float(np.max(scene.tree.spheres[:, 3], initial=0.0))
+    return ITERATION_ERROR + _RELATIVE_ITERATION_ERROR * largest
 
 
 def solid_of(shape: ObstacleShape) -> coal.CollisionGeometry:

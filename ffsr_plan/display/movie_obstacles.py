@@ -8,14 +8,14 @@ import numpy as np
 
 from ffsr_plan.display.scenes.projection import convex_outline
 from ffsr_plan.display.scenes.shape_outlines import outline_of, section, shaded_sides
-from ffsr_plan.scene.obstacle_shapes import placed_axes
+from ffsr_plan.scene.shapes.obstacle_shapes import placed_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ffsr_plan.core.arrays import Array, Flags
-    from ffsr_plan.scene.obstacle_shapes import ObstacleShape
     from ffsr_plan.scene.scene import Scene
+    from ffsr_plan.scene.shapes.obstacle_shapes import ObstacleShape
 
 RINGS, OBSTACLE, DASHES = "#5fb3ce", "#aeb4bf", (0, (4, 3))
 _LIGHT = np.array([-0.45, 0.55, 0.7]) / np.linalg.norm([-0.45, 0.55, 0.7])  # along the view axes

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from ffsr_plan.display.figure_style import Style
     from ffsr_plan.display.scenes.picture_data import MotionFrames
     from ffsr_plan.problem.problem import Problem
-    from ffsr_plan.scene.keep_in_zones import Zone
-    from ffsr_plan.scene.obstacle_shapes import ObstacleShape
+    from ffsr_plan.scene.shapes.keep_in_zones import Zone
+    from ffsr_plan.scene.shapes.obstacle_shapes import ObstacleShape
 
 _TURN, _ELEVATION = 68.0, 28.0  # of the viewer from the direction of the path, from the plane [deg]
 _LIGHT = np.array([-0.45, -0.55, 0.70]) / np.linalg.norm([-0.45, -0.55, 0.70])  # towards it

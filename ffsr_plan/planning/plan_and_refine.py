@@ -135,7 +135,8 @@ def refine(plan: Plan) -> Plan:
     if lattice is None or plan.lattice is None or lattice.postures:
         raise InvalidInput("plan", lattice, "a plan on a lattice without posture axes")
     nominal = plan.lattice.nominal
-    prover = Prover(nominal, plan.problem.obstacles, plan.problem.tolerance)
+    problem, pace = plan.problem, plan.problem.pace(nominal.edges)
+    prover = Prover(nominal, problem.obstacles, problem.tolerance, pace=pace)
     offsets = plan.motion.positions - nominal.positions
     refined, _ = refined_path(plan.lattice, prover, offsets, plan.clearances)
     if refined is None:

@@ -104,7 +104,8 @@ class PlanData:
             return whole_objective(problem, self.motion, self.length)
         if problem.delta == 0.0:
             return motion_objective(problem, self.length, np.full(self.motion.edges, np.inf))
-        prover = Prover(self.motion, problem.obstacles, problem.tolerance)
+        pace = problem.pace(self.motion.edges)
+        prover = Prover(self.motion, problem.obstacles, problem.tolerance, pace=pace)
         verdicts = EdgeClearances(problem, prover).of_path(still, self.clearances)
         least = np.array([verdict.least_clearance for verdict in verdicts])
         return motion_objective(problem, self.length, least)

@@ -21,7 +21,7 @@ from ffsr_plan.plans.planner_registry import PLANNERS, Planner
 from ffsr_plan.plans.shape_entries import ZONE_KINDS, Bodies
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.collision_shapes import CONTAINERS
-from ffsr_plan.scene.obstacle_shapes import SHAPES
+from ffsr_plan.scene.shapes.obstacle_shapes import SHAPES
 
 FORMAT = "ffsr-plan/3"
 _LARGEST = 1e300

@@ -12,9 +12,9 @@ from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Rule
 from ffsr_plan.core.settings import UnknownKey, from_mapping
-from ffsr_plan.scene.keep_in_zones import ZONES, Zone
-from ffsr_plan.scene.obstacle_shapes import ObstacleShape
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.keep_in_zones import ZONES, Zone
+from ffsr_plan.scene.shapes.obstacle_shapes import ObstacleShape
 
 ZONE_KINDS: dict[str, type[Any]] = {kind.word: kind for kind in ZONES}  # type: ignore[attr-defined]
 """The classes of zones by their words."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.scene.obstacle_shapes import Cylinder, Ellipsoid, Hull
+from ffsr_plan.scene.shapes.obstacle_shapes import Cylinder, Ellipsoid, Hull
 from ffsr_plan.verification.motion_samples import Sampler
 from ffsr_plan.verification.separation import SampledDistances
 from ffsr_plan.verification.urdf_reading import Bodies

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.scene.keep_in_zones import HalfSpace
-from ffsr_plan.scene.obstacle_shapes import Box, Capsule, Cylinder, Ellipsoid
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+from ffsr_plan.scene.shapes.obstacle_shapes import Box, Capsule, Cylinder, Ellipsoid
 
 BUS = [
     Box((1.2, 1.2, 1.2), (4.0, 0.0, 0.0), name="bus"),

@@ -4,14 +4,18 @@ A point of the robot and a point of the body that touch at some time of an inter
 c_a apart at its begin and are at least c_b apart at its end, and their distance changes by no more
 than both travel. So c_a + c_b > T + B proves the interval free, where T bounds the travel of the
 robot's points and B that of the body's over the same time. Distances are taken in the body's axes,
-in which its shapes rest.
+in which its shapes rest. Where the body's reference point moves at a constant velocity along the
+edge, both are watched from it: its path then counts with the base's own, and not beside it.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ffsr_plan.bodies.moving_body import MovingBody
+from ffsr_plan.bodies.pace import Pace
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core import rotations
@@ -21,10 +25,10 @@ from ffsr_plan.proof.motion_edges import NominalPlacements
 
 
 class BodyEdge:
-    """An edge that is run in an interval of time past one moving body, at a constant pace.
+    """An edge that is run in an interval of time past one moving body.
 
     Attributes:
-        speed: bound on the way of any shape and of the body together per unit of time [m].
+        speed: bound on the way of any shape and of the body together per unit of the edge [m].
         rounding: length added to every travel bound [m].
     """
 
@@ -37,37 +41,38 @@ class BodyEdge:
         layer: int,
         offsets: tuple[Array, Array],
         base_step: Array,
-        times: tuple[float, float],
+        pace: Pace,
         rounding: float,
     ) -> None:
         """An edge whose ends are displaced from the nominal motion.
 
         Args:
             body: the body.
-            query: distances to its scene.
+            query: distances to its shapes.
             placements: placements along the nominal motion.
             travel: travel bounds along it.
             layer: the edge of the nominal motion.
             offsets: displacement of the base at both ends, (3,) each, world axes [m].
             base_step: (3,) displacement of the base origin over the edge, world axes [m].
-            times: begin and end of the edge [s].
+            pace: of the nominal motion.
             rounding: length added to every travel bound [m].
         """
         self._body, self._query, self._placements = body, query, placements
-        self._travel, self._layer, self._offsets, self._times = travel, layer, offsets, times
+        self._travel, self._layer, self._offsets, self._pace = travel, layer, offsets, pace
         self._parts: dict[float, Array] = {}
-        self._base_step, self.rounding = base_step, rounding
-        own = float(np.linalg.norm(base_step) + travel.speeds[layer])
-        motion, span = body.motion, times[1] - times[0]
-        fastest = getattr(motion, "largest_rate", None)
-        turned = motion.turned(*times) if fastest is None else fastest * span
-        self._uniform = hasattr(motion, "velocity")
-        self.speed = own + motion.path(*times) + turned * body.reach if self._uniform else np.inf
+        self.rounding = rounding
+        motion, begin, end = body.motion, self.instant(0.0), self.instant(1.0)
+        velocity = getattr(motion, "velocity", None)
+        self._watched = velocity is not None and pace.is_even(layer)
+        self._step = base_step - velocity * (end - begin) if self._watched else base_step
+        rate: Any = getattr(motion, "largest_rate", None)
+        turned = motion.turned(begin, end) if rate is None else rate * (end - begin)
+        own = float(np.linalg.norm(self._step) + travel.speeds[layer])
+        self.speed = own + turned * body.reach if self._watched else np.inf
 
     def instant(self, time: float) -> float:
         """The time [s] at a place in [0, 1] on the edge."""
-        begin, end = self._times
-        return begin + time * (end - begin)
+        return float(self._pace.instants(np.array(self._layer + time)))
 
     def clearance(self, time: float) -> float:
         """Least distance of any shape to the body [m]."""
@@ -83,17 +88,35 @@ class BodyEdge:
         return self._parts[time]
 
     def travel(self, begin: float, end: float) -> Array:
-        """(g,) bound on the way of each shape and of the body together between two times [m]."""
-        own = self._travel.bounds(self._layer, begin, end, self._base_step)
-        return own + self._body.travel(self.instant(begin), self.instant(end))
+        """(g,) bound on the way of each shape and of the body together between two places [m]."""
+        own = self._travel.bounds(self._layer, begin, end, self._step)
+        first, last = self.instant(begin), self.instant(end)
+        if self._watched:
+            return own + self._body.motion.turned(first, last) * self._body.reach
+        return own + self._body.travel(first, last)
 
     def _in_body(self, time: float) -> Placements:
         """The placement of the shapes in the body's axes, the only one."""
         tail, head = self._offsets
-        placed, pose = self._placements.at(time), self._body.poses([self.instant(time)])
-        frames = placed.frames[self._layer : self._layer + 1].copy()
-        shift = (1.0 - time) * tail + time * head - pose.positions[0]
-        turn = rotations.matrix(pose.attitudes[0])
-        frames[..., 9:12] = (frames[..., 9:12] + shift) @ turn
-        frames[..., :9] = (turn.T @ placed.rotations[self._layer]).reshape(1, -1, 9)
-        return Placements(frames)
+        frames = self._placements.at(time).frames[self._layer : self._layer + 1]
+        shift = (1.0 - time) * tail + time * head
+        return in_axes(Placements(frames), self._body, np.array([self.instant(time)]), shift[None])
+
+
+def in_axes(placed: Placements, body: MovingBody, times: Array, shifts: Array) -> Placements:
+    """Placements in the world, seen in the axes of a body.
+
+    Args:
+        placed: K placements.
+        body: the body.
+        times: (K,) the time of each [s].
+        shifts: (K, 3) displacements of the whole robot, world axes [m].
+    """
+    poses = body.poses(times)
+    turns = rotations.matrix(poses.attitudes)
+    frames, count = placed.frames.copy(), placed.frames.shape[1]
+    moved = frames[..., 9:12] + (shifts - poses.positions)[:, None]
+    frames[..., 9:12] = moved @ turns
+    seen = np.swapaxes(turns, 1, 2)[:, None] @ placed.rotations
+    frames[..., :9] = seen.reshape(-1, count, 9)
+    return Placements(frames)
