@@ -10,12 +10,12 @@ edge, both are watched from it: its path then counts with the base's own, and no
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from ffsr_plan.bodies.body_motion import Drift, Spin
 from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.bodies.pace import Pace
+from ffsr_plan.bodies.tumble import Tumble
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core import rotations
@@ -62,11 +62,12 @@ class BodyEdge:
         self._parts: dict[float, Array] = {}
         self.rounding = rounding
         motion, begin, end = body.motion, self.instant(0.0), self.instant(1.0)
-        velocity = getattr(motion, "velocity", None)
-        self._watched = velocity is not None and pace.is_even(layer)
-        self._step = base_step - velocity * (end - begin) if self._watched else base_step
-        rate: Any = getattr(motion, "largest_rate", None)
-        turned = motion.turned(begin, end) if rate is None else rate * (end - begin)
+        self._watched = isinstance(motion, (Drift, Spin, Tumble)) and pace.is_even(layer)
+        self._step, turned = base_step, motion.turned(begin, end)
+        if isinstance(motion, (Drift, Spin, Tumble)) and self._watched:
+            self._step = base_step - motion.velocity * (end - begin)
+        if isinstance(motion, Tumble):
+            turned = motion.largest_rate * (end - begin)
         own = float(np.linalg.norm(self._step) + travel.speeds[layer])
         self.speed = own + turned * body.reach if self._watched else np.inf
 

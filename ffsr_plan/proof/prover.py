@@ -348,7 +348,8 @@ class Prover:
                 if self._pace is not None:
                     scene = scene.at(float(self._pace.instants(np.array(layer))))
                 if layer == 0:
-                    raise start_in_collision(robot, scene, configurations[0], configurations[-1])
+                    end = None if self._moving else configurations[-1]  # at another time
+                    raise start_in_collision(robot, scene, configurations[0], end)
                 raise goal_in_collision(robot, scene, configurations[-1])
 
     def check_self_collision(self, advice: tuple[str, ...] = ()) -> None:
