@@ -14,6 +14,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ffsr_plan import errors
+    from ffsr_plan.bodies.body_motion import Drift, Poses, Spin
+    from ffsr_plan.bodies.moving_body import MovingBody
+    from ffsr_plan.bodies.pace import Pace
+    from ffsr_plan.bodies.pose_function import PoseFunction
+    from ffsr_plan.bodies.track import Track
+    from ffsr_plan.bodies.tumble import Tumble
     from ffsr_plan.collision.clearance import Clearance, clearance
     from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
     from ffsr_plan.core.contacts import Contact
@@ -34,6 +40,7 @@ if TYPE_CHECKING:
         UncheckedLinks,
         UnprovenCurve,
         UnprovenPath,
+        WideTurns,
         WorkerDied,
     )
     from ffsr_plan.curves.curved_motion import CurvedMotion
@@ -123,6 +130,7 @@ __all__ = [
     "CurvedMotion",
     "Cycle",
     "Cylinder",
+    "Drift",
     "EdgeProof",
     "Ellipsoid",
     "FfsrPlanError",
@@ -148,8 +156,10 @@ __all__ = [
     "Mode",
     "Motion",
     "Mount",
+    "MovingBody",
     "NoPath",
     "OutOfTime",
+    "Pace",
     "PageServer",
     "Panel",
     "PathNotFound",
@@ -157,7 +167,9 @@ __all__ = [
     "PlanNotVerified",
     "PlanningError",
     "Portfolio",
+    "PoseFunction",
     "PoseOutOfReach",
+    "Poses",
     "PostureAnnealing",
     "PostureAxis",
     "PostureTarget",
@@ -177,17 +189,21 @@ __all__ = [
     "SmoothPlan",
     "Solution",
     "SpaceRobot",
+    "Spin",
     "StartInCollision",
     "States",
     "TimedPlan",
+    "Track",
     "Trails",
     "TreeCycle",
     "TreePlanner",
+    "Tumble",
     "UncheckedLinks",
     "UnprovenCurve",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",
+    "WideTurns",
     "WorkerDied",
     "arm_names",
     "certify_edge",
@@ -209,6 +225,12 @@ __all__ = [
 ]
 
 _NAMES = {  # by module; each is loaded when one of its names is first used
+    "bodies.body_motion": ("Drift", "Poses", "Spin"),
+    "bodies.moving_body": ("MovingBody",),
+    "bodies.pace": ("Pace",),
+    "bodies.pose_function": ("PoseFunction",),
+    "bodies.track": ("Track",),
+    "bodies.tumble": ("Tumble",),
     "collision.clearance": ("Clearance", "clearance"),
     "collision.self_collisions": ("SelfCollision", "SelfCollisions", "self_collisions"),
     "core.contacts": ("Contact",),
@@ -229,6 +251,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "UncheckedLinks",
         "UnprovenCurve",
         "UnprovenPath",
+        "WideTurns",
         "WorkerDied",
     ),
     "curves.curved_motion": ("CurvedMotion",),

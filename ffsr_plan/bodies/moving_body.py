@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -107,12 +107,15 @@ class MovingBody:
         start = np.tile(self.attitude, (len(given), 1))
         return Poses(self.position + moved.positions, rotations.multiply(start, moved.attitudes))
 
-    def shapes_at(self, time: float, title: str = "") -> tuple[ObstacleShape, ...]:
+    def shapes_at(self, time: float, title: str = "") -> tuple[Any, ...]:
         """Its shapes in the world at a time, named after it.
 
         Args:
             time: [s].
             title: its name where it has none.
+
+        Returns:
+            Shapes of the same classes.
         """
         (place,), (turn,) = self.poses([time])
         axes, own, placed = rotations.matrix(turn), self.name or title, []

@@ -50,7 +50,7 @@ class PoseFunction:
             raise InvalidInput("function", self.function, allowed)
         for name in ("speed", "turn_rate"):
             number(name, getattr(self, name), at_least=0.0, at_most=FARTHEST)
-        if self.known_until != math.inf:
+        if not (isinstance(self.known_until, float) and self.known_until == math.inf):
             number("known_until", self.known_until, above=0.0)
 
     @property

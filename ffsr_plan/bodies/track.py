@@ -6,23 +6,21 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from ffsr_plan.bodies.body_motion import Poses
+from ffsr_plan.bodies.track_files import read_track
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.checks import FARTHEST, finite_array, unit_quaternion
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.errors import InvalidInput, WideTurns
 from ffsr_plan.core.setting_rules import Rule, Vector
 from ffsr_plan.core.settings import settings
 
 _WIDE, _WIDEST = np.radians(20.0), np.radians(90.0)  # turns of a row that are doubtful, or refused
-
-
-class WideTurns(UserWarning):
-    """A table of attitudes turns so far from row to row that another way may be meant."""
 
 
 @dataclass(frozen=True)
@@ -118,6 +116,19 @@ class Track:
         return tuple(  # type: ignore[return-value]
             np.concatenate([[0.0], np.cumsum(each)]) for each in (steps, self._turns)
         )
+
+    @classmethod
+    def from_csv(cls, path: str | Path) -> Track:
+        """Read a comma-separated table with the columns t, x, y, z, qx, qy, qz and qw.
+
+        Args:
+            path: the file. A header such as `x [mm]` or `t [min]` gives a unit; the defaults are
+                the second and the metre.
+
+        Raises:
+            InvalidInput: names file, line, column and value.
+        """
+        return cls(*read_track(path))
 
     @property
     def axis(self) -> Array | None:

@@ -136,6 +136,7 @@ def _problem(what: str, table: ProblemTable) -> Problem:
             scene.shapes,
             scene.keep_in,
             scene.growth,
+            [body.body() for body in scene.bodies],
         ),
     )
     return _within(
@@ -149,6 +150,8 @@ def _problem(what: str, table: ProblemTable) -> Problem:
             lattice=table.lattice,
             mode=table.mode,
             window=table.window,
+            duration=table.duration,
+            ramp=table.ramp,
             **{name: getattr(table, name) for name in PLAIN},
         ),
     )

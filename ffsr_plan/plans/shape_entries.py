@@ -28,15 +28,20 @@ def shape_entries(scene: Scene) -> dict[str, Any]:
     """
     entries: dict[str, Any] = {}
     if scene.shapes:
-        entries["shapes"] = [_entry(shape) for shape in scene.shapes]
+        entries["shapes"] = [plain_entry(shape) for shape in scene.shapes]
     if scene.keep_in:
-        entries["keep_in"] = [_entry(zone) for zone in scene.keep_in]
+        entries["keep_in"] = [plain_entry(zone) for zone in scene.keep_in]
     if entries and scene.growth > 0.0:
         entries["growth"] = scene.growth
     return entries
 
 
-def _entry(body: ObstacleShape | Zone) -> dict[str, Any]:
+def plain_entry(body: ObstacleShape | Zone) -> dict[str, Any]:
+    """A shape or zone in plain Python values, with its kind.
+
+    Args:
+        body: the shape or zone.
+    """
     values = {each.name: getattr(body, each.name) for each in fields(body)}  # type: ignore[arg-type]
     plain = {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in values.items()}
     return {"kind": body.word, **plain}

@@ -157,7 +157,7 @@ class Problem:
             tries = DESCENTS
         goals = goals_at_pose(
             self.robot,
-            self.obstacles,
+            self.obstacles.at(self.duration or 0.0),
             frame,
             position,
             attitude,
