@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     from ffsr_plan.planning.smooth_plan import SmoothPlan
     from ffsr_plan.planning.warm_up import warm_up
     from ffsr_plan.portfolio.portfolio_planner import Portfolio
-    from ffsr_plan.problem.lattice_settings import Axis, Lattice
+    from ffsr_plan.problem.lattice_settings import Axis, Lattice, Progress
     from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
     from ffsr_plan.problem.problem import Problem
     from ffsr_plan.proof.interval_halving import Verdict
@@ -174,6 +174,7 @@ __all__ = [
     "PostureAxis",
     "PostureTarget",
     "Problem",
+    "Progress",
     "RateLimits",
     "Replacement",
     "Report",
@@ -275,7 +276,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "planning.smooth_plan": ("SmoothPlan",),
     "planning.warm_up": ("warm_up",),
     "portfolio.portfolio_planner": ("Portfolio",),
-    "problem.lattice_settings": ("Axis", "Lattice"),
+    "problem.lattice_settings": ("Axis", "Lattice", "Progress"),
     "problem.posture_axes": ("PostureAxis", "PostureTarget"),
     "problem.problem": ("Problem",),
     "proof.interval_halving": ("Verdict",),

@@ -75,6 +75,8 @@ class LeastFuel:
         lattice = problem.lattice
         if lattice is None:
             allowed = "a problem with a lattice, whose layers are the control points"
+        elif lattice.progress is not None:
+            allowed = "a lattice without progress: a robot that waits has no fixed pace"
         elif lattice.postures:
             allowed = "a lattice without posture axes: all nodes of a layer have the same joints"
         elif problem.mode.floats:

@@ -207,7 +207,7 @@ def _certified(
     problem: Problem, planner: Planner, seed: int | None, watch: Stopwatch, solution: Solution
 ) -> Plan:
     """The plan of a solution; `watch` was started when it was asked for."""
-    if problem.lattice is not None and solution.lattice is None:
+    if isinstance(planner, Portfolio) and solution.lattice is None:
         problem = without_lattice(problem)  # the trees of a portfolio found the path
     end = solution.motion.configurations()[-1]
     return Plan(

@@ -60,6 +60,29 @@ def for_proof(problem: Problem, cut_short: bool, links: bool) -> tuple[str, ...]
     return (*advice, f"more than {problem.given_lattice.divisions} divisions")
 
 
+def against_closed_times(problem: Problem) -> tuple[str, ...]:
+    """What may help where a lattice with progress holds no path.
+
+    Args:
+        problem: gives the lattice.
+    """
+    lattice = problem.given_lattice
+    progress = lattice.progress
+    assert progress is not None
+    needed = -(-progress.steps // progress.most)
+    if lattice.divisions < needed:
+        return (
+            f"at least {needed} divisions: the goal is {progress.steps} steps of progress away",
+        )
+    advice = [
+        f"lattice.progress, with before {progress.before} and beyond {progress.beyond}: more, so "
+        "that the robot can give way behind the start and beyond the goal",
+        f"more than {lattice.divisions} divisions",
+    ]
+    advice += ["a longer duration"] if problem.duration is not None else []
+    return (*_offsets(problem), *advice)
+
+
 def _offsets(problem: Problem) -> Iterator[str]:
     """The axes across the way of the base: those that exist, and those that could."""
     travels = bool(np.any(problem.base_displacement != 0.0))

@@ -21,8 +21,8 @@ from ffsr_plan.goal_poses.descent import DESCENTS
 from ffsr_plan.goal_poses.inverse_kinematics import goals_at_pose
 from ffsr_plan.problem.base_window import Window, default_window
 from ffsr_plan.problem.configuration_rules import Configuration, Configurations, ModeName
-from ffsr_plan.problem.duration_rules import check_duration
 from ffsr_plan.problem.lattice_settings import Lattice
+from ffsr_plan.problem.timing_rules import check_duration, check_progress
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
@@ -108,6 +108,8 @@ class Problem:
         self._check_clearance()
         self._check_alternatives()
         check_duration(self.scene, self.duration, self.ramp)
+        if self.lattice is not None:
+            check_progress(self.lattice, self.mode, self.base_displacement)
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{name}={value}" for name, value in self._summary())

@@ -43,6 +43,7 @@ class BodyEdge:
         base_step: Array,
         pace: Pace,
         rounding: float,
+        slot: int | None = None,
     ) -> None:
         """An edge whose ends are displaced from the nominal motion.
 
@@ -54,15 +55,17 @@ class BodyEdge:
             layer: the edge of the nominal motion.
             offsets: displacement of the base at both ends, (3,) each, world axes [m].
             base_step: (3,) displacement of the base origin over the edge, world axes [m].
-            pace: of the nominal motion.
+            pace: at which edges follow one another.
             rounding: length added to every travel bound [m].
+            slot: the edge of the pace whose time the edge takes; by default that of its number.
         """
+        self._slot = layer if slot is None else slot
         self._body, self._query, self._placements = body, query, placements
         self._travel, self._layer, self._offsets, self._pace = travel, layer, offsets, pace
         self._parts: dict[float, Array] = {}
         self.rounding = rounding
         motion, begin, end = body.motion, self.instant(0.0), self.instant(1.0)
-        self._watched = isinstance(motion, (Drift, Spin, Tumble)) and pace.is_even(layer)
+        self._watched = isinstance(motion, (Drift, Spin, Tumble)) and pace.is_even(self._slot)
         self._step, turned = base_step, motion.turned(begin, end)
         if isinstance(motion, (Drift, Spin, Tumble)) and self._watched:
             self._step = base_step - motion.velocity * (end - begin)
@@ -73,7 +76,7 @@ class BodyEdge:
 
     def instant(self, time: float) -> float:
         """The time [s] at a place in [0, 1] on the edge."""
-        return float(self._pace.instants(np.array(self._layer + time)))
+        return float(self._pace.instants(np.array(self._slot + time)))
 
     def clearance(self, time: float) -> float:
         """Least distance of any shape to the body [m]."""

@@ -24,7 +24,8 @@ from ffsr_plan.proof.motion_edges import NominalPlacements, odd_times
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
 
-_POSE_ERROR = 1e-9  # of a body's attitude [rad] and of its place [m]
+POSE_ERROR = 1e-9
+"""Of a body's attitude [rad] and of its place [m]."""
 
 
 class MovingObstacles:
@@ -66,7 +67,7 @@ class MovingObstacles:
         self._queries = [ObstacleQuery(motion.robot, each, deadline) for each in scenes]
         self._first = len(scene) - len(scene.bodies)
         self._roundings = [
-            rounding + _POSE_ERROR * (1.0 + body.reach) + iteration_error(motion.robot, each)
+            rounding + POSE_ERROR * (1.0 + body.reach) + iteration_error(motion.robot, each)
             for body, each in zip(self._bodies, scenes, strict=True)
         ]
         self.rounding = max(self._roundings)

@@ -17,8 +17,8 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.settings import from_mapping
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.plans.planner_registry import Planner
-from ffsr_plan.problem.duration_rules import check_duration
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.problem.timing_rules import check_duration
 from ffsr_plan.scenario_files.scenario_schema import ScenarioFile
 from ffsr_plan.scenario_files.shape_tables import with_names
 from ffsr_plan.scene.scene import Scene

@@ -53,6 +53,9 @@ class LatticePlanner(ABC):
         """Raise `InvalidInput` if the planner cannot solve the problem, naming one that can."""
         if problem.lattice is None:
             raise InvalidInput("planner", self.name, "tree-planner, or a problem with a lattice")
+        if problem.lattice.progress is not None:
+            allowed = "lattice-optimum on a lattice with progress, or a lattice without it"
+            raise InvalidInput("planner", self.name, allowed)
         if not problem.given_lattice.postures:
             return
         reason = "this planner searches one configuration a node"

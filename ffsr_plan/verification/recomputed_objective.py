@@ -57,6 +57,8 @@ def recompute(plan: PlanData, bodies: Bodies, nodes: Array) -> Recomputed:
     if problem.lattice is None:
         lengths = free_lengths(plan)
         length, counted = float(lengths.sum()), station_clearances(plan, bodies, lengths)
+    elif problem.lattice.progress is not None:
+        length, counted = float(free_lengths(plan).sum()), nodes
     else:
         length = length_of(problem, plan.motion.positions, plan.motion.joint_values)
         counted = nodes

@@ -58,7 +58,9 @@ def calls(plan, tmp_path_factory):
 
     settings = {
         fp.Axis: {"half_count": 1, "spacing": 0.1},
-        fp.Lattice: {"divisions": 3, "lateral": None, "normal": None, "postures": ()},
+        fp.Lattice: {"divisions": 3, "lateral": None, "normal": None, "postures": (),
+                     "progress": None},
+        fp.Progress: {"steps": 3, "most": 1, "aside": 1, "before": 0, "beyond": 0},
         fp.PostureAxis: {"joints": {"left_1": 1.0}, "half_count": 1, "spacing": 0.1},
         fp.PostureTarget: {"towards": "stowed", "levels": 2},
         fp.PostureAxis.towards: {"posture": "stowed", "levels": 2},
