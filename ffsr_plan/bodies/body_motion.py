@@ -56,6 +56,11 @@ class BodyMotion(Protocol):
         """Time up to which it is known [s]."""
         ...
 
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Bounds on the reference point's speed [m/s] and on the angular speed [rad/s]."""
+        ...
+
     def poses(self, times: Array) -> Poses:
         """Poses at times (n,) [s]."""
         ...
@@ -90,6 +95,11 @@ class Drift:
     def known_until(self) -> float:
         """Infinite."""
         return math.inf
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Speed of the reference point [m/s], and zero."""
+        return float(np.linalg.norm(self.velocity)), 0.0
 
     def poses(self, times: Array) -> Poses:
         """Poses at times (n,) [s]; see `BodyMotion`."""
@@ -129,6 +139,11 @@ class Spin:
     def known_until(self) -> float:
         """Infinite."""
         return math.inf
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Speed of the reference point [m/s] and angular speed [rad/s]."""
+        return float(np.linalg.norm(self.velocity)), float(np.linalg.norm(self.rate))
 
     def poses(self, times: Array) -> Poses:
         """Poses at times (n,) [s]; see `BodyMotion`."""

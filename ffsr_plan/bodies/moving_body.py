@@ -107,6 +107,20 @@ class MovingBody:
         start = np.tile(self.attitude, (len(given), 1))
         return Poses(self.position + moved.positions, rotations.multiply(start, moved.attitudes))
 
+    def point(self, place: ArrayLike, time: float) -> Array:
+        """Where a point that is fixed to it is at a time.
+
+        Args:
+            place: (3,) along its own axes [m].
+            time: [s].
+
+        Returns:
+            (3,) world [m].
+        """
+        (position,), (turn,) = self.poses([time])
+        own = finite_array("place", place, (3,), FARTHEST)
+        return np.asarray(position + rotations.matrix(turn) @ own)
+
     def shapes_at(self, time: float, title: str = "") -> tuple[Any, ...]:
         """Its shapes in the world at a time, named after it.
 
@@ -134,6 +148,12 @@ class MovingBody:
         middles = spheres[:, :3]
         apart = middles if axis is None else np.cross(middles, axis)
         return float(np.max(np.linalg.norm(apart, axis=1) + spheres[:, 3]))
+
+    @property
+    def speed(self) -> float:
+        """Bound on the speed of any of its points, at any time [m/s]."""
+        path, turned = self.motion.speeds
+        return path + turned * self.reach
 
     def travel(self, begin: float, end: float) -> float:
         """Bound on the way of any of its points between two times [m].

@@ -58,6 +58,11 @@ class PoseFunction:
         """None."""
         return None
 
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """The stated speeds [m/s] and [rad/s]."""
+        return self.speed, self.turn_rate
+
     def poses(self, times: Array) -> Poses:
         """Poses in the world at times (n,) [s]; see `BodyMotion`.
 

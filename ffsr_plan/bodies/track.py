@@ -140,6 +140,13 @@ class Track:
         """The last time of the table [s]."""
         return float(self.times[-1])
 
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Greatest speed of the reference point [m/s] and angular speed [rad/s] of any row."""
+        spans = np.diff(self.times)
+        path, turned = (np.diff(each) / spans for each in self._ways)
+        return float(path.max()), float(turned.max())
+
     def poses(self, times: Array) -> Poses:
         """Poses in the world at times (n,) [s]; see `BodyMotion`."""
         row = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 2)

@@ -152,6 +152,11 @@ class Tumble:
         """(n, 3) angular velocities at times (n,) [s], body axes [rad/s]."""
         return self._states(times)[0] @ self._principal[1].T
 
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Speed of the centre of mass [m/s], and the greatest angular speed [rad/s]."""
+        return float(np.linalg.norm(self.velocity)), self.largest_rate
+
     def poses(self, times: Array) -> Poses:
         """Poses at times (n,) [s]; see `BodyMotion`."""
         attitudes = self._states(times)[1]

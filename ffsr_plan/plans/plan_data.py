@@ -117,6 +117,16 @@ class PlanData:
         return self.motion.edges if lattice is None else lattice.divisions
 
     @property
+    def slip(self) -> float:
+        """Time by which the whole flight may be early or late and is still free of bodies [s].
+
+        The robot is then where it was proven free, and no body has come nearer than it can move in
+        that time. Infinite where nothing moves.
+        """
+        fastest = max((body.speed for body in self.problem.scene.bodies), default=0.0)
+        return self.certificate.least_clearance / fastest if fastest > 0.0 else np.inf
+
+    @property
     def gap(self) -> float:
         """(lattice_objective - optimum) / optimum; see `optimum_is_exact`."""
         above = self.lattice_objective - self.optimum

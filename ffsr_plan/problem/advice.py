@@ -26,6 +26,8 @@ def against_obstacles(problem: Problem, ends: tuple[float, float]) -> tuple[str,
     if near:
         return tuple(near)
     advice = [*_offsets(problem)]
+    if problem.scene.bodies:
+        advice.append("lattice.progress, with which the robot can wait; another duration or ramp")
     if problem.given_lattice.axes:
         advice.append(f"more than {problem.given_lattice.divisions} divisions")
     if problem.robot.nd:

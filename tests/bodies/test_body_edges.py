@@ -170,3 +170,20 @@ def test_shapes_are_where_the_body_has_them():
         wanted = (axes * Rotation.from_quat(np.array(own.attitude))).as_matrix()
         assert Rotation.from_quat(np.array(shape.attitude)).as_matrix() == pytest.approx(wanted)
         assert shape.name == "it"
+        assert moving.point(own.position, 30.0) == pytest.approx(np.array(shape.position))
+
+
+@pytest.mark.parametrize("kind", ["drift", "spin", "tumble", "track", "function"])
+def test_no_point_of_a_body_is_faster_than_its_speed(kind):
+    rng = np.random.default_rng(4)
+    for _ in range(5):
+        moving = body(rng, kind, rng.normal(size=3))
+        times = np.linspace(0.0, 50.0, 501)
+        poses, points = moving.poses(times), rng.normal(size=(60, 3))
+        inside = points * (moving.reach / np.linalg.norm(points, axis=1).max())
+        axes = Rotation.from_quat(np.array(poses.attitudes)).as_matrix()
+        placed = poses.positions[:, None] + inside @ axes.transpose(0, 2, 1)
+        fastest = np.linalg.norm(np.diff(placed, axis=0), axis=2).max() / 0.1
+        assert fastest <= moving.speed * (1.0 + 1e-9)
+        if kind in ("drift", "track"):
+            assert fastest > 0.3 * moving.speed

@@ -144,7 +144,7 @@ class AllPaths:
 
 def some_body(rng, place, duration):
     """A body of one of four kinds near a place."""
-    shapes = [fp.Box(rng.uniform(0.1, 0.9, 3)), fp.Ball(0.2, rng.uniform(-0.5, 0.5, 3))]
+    shapes = [fp.Box(rng.uniform(0.1, 0.5, 3)), fp.Ball(0.1, rng.uniform(-0.3, 0.3, 3))]
     kind, angles = rng.integers(4), rng.uniform(-3.0, 3.0, 3)
     if kind == 0:
         velocity = rng.normal(size=3) * (0.05, 0.05, 0.0)
@@ -169,7 +169,7 @@ def small_problem(seed, mode="free-flying", waits=False):
     ]
     if rng.random() < 0.5:
         bodies.append(some_body(rng, far * np.array([0.5, rng.uniform(-0.5, 0.5), 0.0]), 60.0))
-    still = [fp.Box((0.2, 0.2, 1.0), (0.5 * far, rng.uniform(-1.5, 1.5), 0.0))]
+    still = [fp.Box((0.2, 0.2, 1.0), (0.5 * far, rng.uniform(0.8, 2.4) * rng.choice([-1, 1]), 0.0))]
     lattice = fp.Lattice(3, lateral=fp.Axis(2, 0.5))
     if waits:
         most, beyond = int(rng.integers(1, 3)), int(rng.integers(2))
