@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.bodies.pace import Pace
+from ffsr_plan.collision.body_distances import BodyDistances
 from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
-from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.progress_lattice.progress_steps import ProgressSteps
-from ffsr_plan.proof.body_edge import BodyEdge, in_axes
+from ffsr_plan.proof.body_edge import BodyEdge
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify
 from ffsr_plan.proof.motion_edges import NominalPlacements
@@ -44,7 +44,7 @@ class ProgressBodies:
         motion = steps.motion
         self._travel, self._placements = EdgeTravel(motion), NominalPlacements(motion)
         self._base_steps = motion.base_steps()
-        scenes = [Scene(shapes=body.shapes, growth=scene.growth) for body in self._bodies]
+        scenes = scene.body_scenes
         self._queries = [ObstacleQuery(motion.robot, each, deadline) for each in scenes]
         self._roundings = [
             ROUNDING
@@ -62,26 +62,34 @@ class ProgressBodies:
         )
         self.travel = np.concatenate([[0.0], np.cumsum(self._ways.max(axis=0))])
         placed = shape_placements(motion.robot, motion.configurations()[steps.corners])
-        self._seen = [self._everywhere(placed, b, times) for b in range(len(self._bodies))]
+        frames = Placements(np.tile(placed.frames, (len(times), 1, 1)))
+        every = np.repeat(times, len(steps.corners))  # the time of each layer for each place
+        self._seen = [
+            BodyDistances(motion.robot, body, query, frames, every)
+            for body, query in zip(self._bodies, self._queries, strict=True)
+        ]
 
     @property
     def queries(self) -> int:
         """Number of Coal queries so far."""
         return sum(query.count for query in self._queries)
 
-    def clearances(self, layers: IntArray, places: IntArray, offsets: IntArray) -> Array:
-        """Clearances of nodes from the bodies at the times of their layers.
+    def least(self, layers: IntArray, places: IntArray, offsets: IntArray, others: Array) -> Array:
+        """The lesser of the nodes' distances to all bodies, at their times, and of others.
 
         Args:
             layers: (k,) layers.
             places: (k,) places.
             offsets: (k,) numbers of the offsets.
+            others: (k,) distances to other obstacles [m].
 
         Returns:
             (k,) distances [m].
         """
-        every = range(len(self._bodies))
-        return np.minimum.reduce([self._distances(b, layers, places, offsets) for b in every])
+        rows = self._rows(layers, places)
+        for seen in self._seen:
+            others = seen.least(rows, self._offsets[offsets], others)
+        return others
 
     def certify(
         self, layers: IntArray, places: IntArray, offsets: IntArray, tolerance: float
@@ -101,8 +109,8 @@ class ProgressBodies:
         own = np.linalg.norm(moved, axis=1) + self._travel.speeds[edges]
         verdicts = [Verdict(True, np.inf, 0.0, 0)] * len(layers)
         for b in range(len(self._bodies)):
-            first = self._distances(b, layers, places[:, 0], offsets[:, 0])
-            last = self._distances(b, layers + 1, places[:, 1], offsets[:, 1])
+            first = self._seen[b].distances(self._rows(layers, places[:, 0]), tails)
+            last = self._seen[b].distances(self._rows(layers + 1, places[:, 1]), heads)
             ways = own + self._ways[b, layers] + self._roundings[b]
             for k, ends in enumerate(zip(first.tolist(), last.tolist(), strict=True)):
                 found = Verdict(True, min(ends), 0.0, 0)
@@ -117,16 +125,6 @@ class ProgressBodies:
                 verdicts[k] = worse(verdicts[k], found)
         return verdicts
 
-    def _everywhere(self, placed: Placements, b: int, times: Array) -> tuple[Placements, Array]:
-        """The shapes at every layer and place, in the axes of a body; and the body's axes."""
-        body, count = self._bodies[b], len(placed.frames)
-        frames = np.tile(placed.frames, (len(times), 1, 1))
-        every = np.repeat(times, count)
-        seen = in_axes(Placements(frames), body, every, np.zeros((len(every), 3)))
-        return seen, rotations.matrix(body.poses(times).attitudes)
-
-    def _distances(self, b: int, layers: IntArray, places: IntArray, offsets: IntArray) -> Array:
-        seen, turns = self._seen[b]
-        shifts = (self._offsets[offsets][:, None] @ turns[layers])[:, 0]
-        rows = layers * len(self._steps.values) + places
-        return self._queries[b].distances_at(seen, rows, shifts)
+    def _rows(self, layers: IntArray, places: IntArray) -> IntArray:
+        """(k,) rows of the placements: all places of layer 0, then of layer 1, and so on."""
+        return np.asarray(layers * len(self._steps.values) + places)

@@ -68,7 +68,7 @@ class ProgressRoadmap:
             self._bodies = ProgressBodies(self.steps, scene, pace, self.offsets, deadline)
         moving = m if self._bodies else 0
         self.moving: States = np.zeros((moving, *shape), dtype=np.int8)
-        self._bounds: Array = np.full((m + 1, count, n), np.inf)
+        self._bounds: Array = np.tile(self._still, (m + 1, 1, 1))
         self._known: Flags = np.full(self._bounds.shape, self._bodies is None)
         self._distances = np.array(lattice.distances)
         self.node_costs = np.empty(self._bounds.shape)
@@ -77,10 +77,7 @@ class ProgressRoadmap:
 
     def clearances(self, path: IntArray) -> Array:
         """(m + 1,) clearances at the nodes of a path (m + 1, 3) that have been learnt [m]."""
-        layers = np.arange(len(path))
-        return np.minimum(
-            self._still[path[:, 0], path[:, 1]], self._bounds[layers, path[:, 0], path[:, 1]]
-        )
+        return self._bounds[np.arange(len(path)), path[:, 0], path[:, 1]]
 
     def learn(self, path: IntArray) -> int | None:
         """Evaluate the nodes of a path.
@@ -99,7 +96,8 @@ class ProgressRoadmap:
         if not len(layers) or self._bodies is None:
             return None
         before = self.node_costs[layers, places[layers], offsets[layers]]
-        exact = self._bodies.clearances(layers, places[layers], offsets[layers])
+        still = self._still[places[layers], offsets[layers]]
+        exact = self._bodies.least(layers, places[layers], offsets[layers], still)
         self._node_queries += len(layers)
         nodes = np.column_stack([layers, places[layers], offsets[layers]])
         between, travel = self.steps.between, self._bodies.travel
@@ -178,7 +176,7 @@ class ProgressRoadmap:
 
     def _price(self, first: int, end: int) -> None:
         """Work out the costs of the nodes of some layers."""
-        bounds = np.minimum(self._bounds[first:end], self._still)
+        bounds = self._bounds[first:end]
         costs = np.where(bounds > 0.0, nearness(self.problem, bounds), np.inf)
         self.node_costs[first:end] = costs
         for layer, place in ((0, self.steps.start), (len(self._bounds) - 1, self.steps.goal)):

@@ -16,9 +16,9 @@ from ffsr_plan.bodies.body_motion import Drift, Spin
 from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.bodies.pace import Pace
 from ffsr_plan.bodies.tumble import Tumble
+from ffsr_plan.collision.body_distances import in_axes
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
-from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.motion_edges import NominalPlacements
@@ -105,22 +105,3 @@ class BodyEdge:
         frames = self._placements.at(time).frames[self._layer : self._layer + 1]
         shift = (1.0 - time) * tail + time * head
         return in_axes(Placements(frames), self._body, np.array([self.instant(time)]), shift[None])
-
-
-def in_axes(placed: Placements, body: MovingBody, times: Array, shifts: Array) -> Placements:
-    """Placements in the world, seen in the axes of a body.
-
-    Args:
-        placed: K placements.
-        body: the body.
-        times: (K,) the time of each [s].
-        shifts: (K, 3) displacements of the whole robot, world axes [m].
-    """
-    poses = body.poses(times)
-    turns = rotations.matrix(poses.attitudes)
-    frames, count = placed.frames.copy(), placed.frames.shape[1]
-    moved = frames[..., 9:12] + (shifts - poses.positions)[:, None]
-    frames[..., 9:12] = moved @ turns
-    seen = np.swapaxes(turns, 1, 2)[:, None] @ placed.rotations
-    frames[..., :9] = seen.reshape(-1, count, 9)
-    return Placements(frames)

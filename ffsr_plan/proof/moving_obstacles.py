@@ -10,14 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.bodies.pace import Pace
+from ffsr_plan.collision.body_distances import BodyDistances, in_axes
 from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
-from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.proof.body_edge import BodyEdge, in_axes
+from ffsr_plan.proof.body_edge import BodyEdge
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import NominalPlacements, odd_times
@@ -63,7 +63,7 @@ class MovingObstacles:
         self._bodies, self._pace, self._deadline = scene.bodies, pace, deadline
         self._edges, self._steps = motion.edges, motion.base_steps()
         self._travel, self._placements, self._corners = travel, placements, corners
-        scenes = [Scene(shapes=body.shapes, growth=scene.growth) for body in self._bodies]
+        self._robot, scenes = motion.robot, scene.body_scenes
         self._queries = [ObstacleQuery(motion.robot, each, deadline) for each in scenes]
         self._first = len(scene) - len(scene.bodies)
         self._roundings = [
@@ -76,38 +76,29 @@ class MovingObstacles:
             [[body.travel(*ends[k : k + 2]) for k in range(motion.edges)] for body in self._bodies]
         )
         self.travel = frozen(self._ways.max(axis=0))
-        self._seen: dict[tuple[int, int], tuple[Placements, Array]] = {}
+        self._seen: dict[tuple[int, int], BodyDistances] = {}
 
     @property
     def queries(self) -> int:
         """Number of Coal queries so far."""
         return sum(query.count for query in self._queries)
 
-    def clearances(self, layers: IntArray, offsets: Array) -> Array:
-        """Clearances from the bodies at layers of the displaced motion, at the layers' times.
+    def least(self, parts: int, rows: IntArray, offsets: Array, others: Array) -> Array:
+        """The lesser of the distances to all bodies and of others, at the time of each place.
 
         Args:
-            layers: (k,) layers.
-            offsets: (k, 3) displacements of the base [m].
-
-        Returns:
-            (k,) distances to the nearest body [m].
-        """
-        return self.within_edges(0, layers, offsets)
-
-    def within_edges(self, parts: int, rows: IntArray, offsets: Array) -> Array:
-        """Clearances from the bodies at places inside edges; see `NominalPlacements.between`.
-
-        Args:
-            parts: 2, 4, 8 or 16; 0 for the layers.
+            parts: 2, 4, 8 or 16 for places inside edges, see `NominalPlacements.between`; 0 for
+                the layers.
             rows: (k,) rows of the placements.
             offsets: (k, 3) displacements of the base there [m].
+            others: (k,) distances to other obstacles [m].
 
         Returns:
-            (k,) distances to the nearest body [m].
+            (k,) distances [m].
         """
-        every = [self._distances(b, parts, rows, offsets) for b in range(len(self._bodies))]
-        return np.minimum.reduce(every)
+        for b in range(len(self._bodies)):
+            others = self._body(b, parts).least(rows, offsets, others)
+        return others
 
     def certify(
         self, layers: IntArray, tails: Array, heads: Array, ends: Array, tolerance: float
@@ -129,8 +120,9 @@ class MovingObstacles:
             left = np.flatnonzero(ends.sum(axis=1) <= ways)
             if not len(left):
                 continue
-            first = self._distances(b, 0, layers[left], tails[left])
-            last = self._distances(b, 0, layers[left] + 1, heads[left])
+            body = self._body(b, 0)
+            first = body.distances(layers[left], tails[left])
+            last = body.distances(layers[left] + 1, heads[left])
             for k, pair in zip(left.tolist(), zip(first, last, strict=True), strict=True):
                 if verdicts[k].free and sum(pair) <= ways[k]:
                     edge = self._edge(b, int(layers[k]), tails[k], heads[k])
@@ -151,9 +143,12 @@ class MovingObstacles:
         """
         bound, layers = least, np.arange(self._edges + 1)
         for b in range(len(self._bodies)):
-            clearances = self._distances(b, 0, layers, offsets).tolist()
-            for layer in range(self._edges):
-                ends = clearances[layer], clearances[layer + 1]
+            clearances = self._body(b, 0).distances(layers, offsets)
+            steps = np.linalg.norm(self._steps + np.diff(offsets, axis=0), axis=1)
+            ways = steps + self._travel.speeds + self._ways[b] + self._roundings[b]
+            margins = clearances[:-1] + clearances[1:] - ways
+            for layer in np.flatnonzero(margins < 2.0 * least).tolist():
+                ends = float(clearances[layer]), float(clearances[layer + 1])
                 edge = self._edge(b, layer, offsets[layer], offsets[layer + 1])
                 found, least = clearance_bound(edge, ends, least, precision)
                 bound = min(bound, found)
@@ -170,10 +165,8 @@ class MovingObstacles:
         """
         shift = (1.0 - time) * tail + time * head
         at = self._corners if time == 0.0 else self._placements.at(time)
-        frames, instant = (
-            at.frames[layer : layer + 1],
-            self._pace.instants(np.array([layer + time])),
-        )
+        frames = at.frames[layer : layer + 1]
+        instant = self._pace.instants(np.array([layer + time]))
         pairs = []
         for b, query in enumerate(self._queries):
             seen = in_axes(Placements(frames), self._bodies[b], instant, shift[None])
@@ -188,21 +181,19 @@ class MovingObstacles:
             step, self._pace, self._roundings[b],
         )  # fmt: skip
 
-    def _distances(self, b: int, parts: int, rows: IntArray, offsets: Array) -> Array:
-        """(k,) distances to one body of displaced placements at the layers or inside edges [m]."""
+    def _body(self, b: int, parts: int) -> BodyDistances:
+        """Distances to one body at the layers or at places inside edges."""
         if (b, parts) not in self._seen:
-            body, m = self._bodies[b], self._edges
-            places: Array = np.arange(m + 1.0)
+            places: Array = np.arange(self._edges + 1.0)
             placed = self._corners
             if parts:
                 places = np.add.outer(odd_times(parts), places[:-1]).ravel()
                 placed = self._placements.between(parts)
             times = self._pace.instants(places)
-            seen = in_axes(placed, body, times, np.zeros((len(times), 3)))
-            self._seen[b, parts] = seen, rotations.matrix(body.poses(times).attitudes)
-        seen, turns = self._seen[b, parts]
-        shifts = (offsets[:, None] @ turns[rows])[:, 0]
-        return self._queries[b].distances_at(seen, rows, shifts)
+            self._seen[b, parts] = BodyDistances(
+                self._robot, self._bodies[b], self._queries[b], placed, times
+            )
+        return self._seen[b, parts]
 
 
 def worse(one: Verdict, other: Verdict) -> Verdict:

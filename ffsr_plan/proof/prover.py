@@ -114,7 +114,7 @@ class Prover:
         found = self._obstacles.distances_at(self._corners, layers, offsets)
         if self._moving is None:
             return found
-        return np.minimum(found, self._moving.clearances(layers, offsets))
+        return self._moving.least(0, layers, offsets, found)
 
     def half_way(self, layers: IntArray, offsets: Array) -> Array:
         """Clearances half-way on edges of the displaced motion, in closed form for a search.
@@ -129,7 +129,7 @@ class Prover:
         found = self._obstacles.closed_at(self._placements.between(2), layers, offsets)
         if self._moving is None:
             return found
-        return np.minimum(found, self._moving.within_edges(2, layers, offsets))
+        return self._moving.least(2, layers, offsets, found)
 
     def sampled_edges(
         self, layers: IntArray, tails: Array, heads: Array, ends: Array
@@ -155,7 +155,7 @@ class Prover:
             flat = rows.ravel(), offsets.reshape(-1, 3)
             found = self._obstacles.distances_at(placed, *flat)
             if self._moving is not None:
-                found = np.minimum(found, self._moving.within_edges(parts, *flat))
+                found = self._moving.least(parts, *flat, found)
             return found.reshape(rows.shape)
 
         return sample_edges(measure, ends, speeds, self.rounding, self.tolerance)

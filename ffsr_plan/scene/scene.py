@@ -283,6 +283,11 @@ class Scene:
         """The obstacles that do not move."""
         return replace(self, bodies=()) if self.bodies else self
 
+    @cached_property
+    def body_scenes(self) -> tuple[Scene, ...]:
+        """The shapes of each body along its own axes, at rest there, grown like all others."""
+        return tuple(Scene(shapes=body.shapes, growth=self.growth) for body in self.bodies)
+
     def at(self, time: float) -> Scene:
         """All obstacles where they are at one time, at rest there.
 
