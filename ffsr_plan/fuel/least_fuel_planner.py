@@ -83,6 +83,10 @@ class LeastFuel:
             allowed = "a mode with thrusters, free-flying or attitude-held: no fuel is burnt here"
         elif not lattice.axes:
             allowed = "a base that moves, and a lattice with a lateral or normal axis"
+        elif problem.scene.bodies:
+            allowed = (
+                "a scene at rest: its curves have no pace at which bodies that move are passed"
+            )
         else:
             return
         raise InvalidInput("planner", self.name, allowed)

@@ -9,6 +9,7 @@ import numpy as np
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.scene.shapes.obstacle_shapes import Cylinder, Ellipsoid, Hull
 from ffsr_plan.verification.motion_samples import Sampler
+from ffsr_plan.verification.moving_bodies.scene_bodies import reach_of
 from ffsr_plan.verification.separation import SampledDistances
 from ffsr_plan.verification.urdf_reading import Bodies
 
@@ -20,6 +21,8 @@ AGREEMENT = 1e-9
 """Allowed difference of lengths [m] and, relative, of F."""
 HULL_AGREEMENT = 1e-8
 """Allowed difference of distances to a hull, cylinder or ellipsoid [m], the precision of Coal's."""
+POSE_AGREEMENT = 1e-9
+"""Allowed difference of the pose of a body that moves [m] and [rad]."""
 _PIECES = 40  # of a path without a lattice, between the 39 stations and the ends
 
 
@@ -86,8 +89,11 @@ def tolerances(
         objective: F.
     """
     hulls = any(shape.half is None and len(shape.points) > 2 for shape in bodies.shapes)
-    hulls |= any(isinstance(shape, (Cylinder, Ellipsoid, Hull)) for shape in problem.scene.shapes)
+    moving = problem.scene.bodies
+    shapes = [*problem.scene.shapes, *(shape for body in moving for shape in body.shapes)]
+    hulls |= any(isinstance(shape, (Cylinder, Ellipsoid, Hull)) for shape in shapes)
     sharp = HULL_AGREEMENT if hulls else AGREEMENT
+    sharp += POSE_AGREEMENT * max((1.0 + reach_of(body) for body in moving), default=0.0)
     slope = problem.delta * float(np.sum(problem.length_unit / _capped(problem, nodes)[1:-1] ** 2))
     return sharp, AGREEMENT + slope * (sharp - AGREEMENT) / max(abs(objective), 1e-12)
 
