@@ -10,6 +10,7 @@ from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.bodies.pace import Pace
 from ffsr_plan.bodies.tumble import Tumble
 from ffsr_plan.core import rotations
+from ffsr_plan.core.errors import IntegrationError
 from ffsr_plan.verification.moving_bodies.body_courses import course_of
 from ffsr_plan.verification.moving_bodies.free_rotation import FreeRotation
 from ffsr_plan.verification.moving_bodies.scene_bodies import SceneBodies, reach_of
@@ -66,6 +67,8 @@ def test_a_tumble_turns_by_no_more_than_its_bounds(seed):
     rates, _ = rotation.states(np.linspace(0.0, LONG, 20_000))
     speeds = np.linalg.norm(rates, axis=1)
     assert speeds.max() <= rotation.largest_rate
+    most = Tumble(inertia, rate, known_until=LONG).largest_rate
+    assert rotation.largest_rate == pytest.approx(most, rel=1e-9)
     changes = np.linalg.norm(np.diff(rates, axis=0), axis=1) / (LONG / 19_999)
     assert changes.max() <= rotation.largest_change
     begins = rng.uniform(0.0, LONG - 10.0, 200)
@@ -78,6 +81,14 @@ def test_a_tumble_turns_by_no_more_than_its_bounds(seed):
     short = rotation.angles(begins, begins + 1e-3)
     speeds = np.linalg.norm(rotation.states(begins)[0], axis=1)
     assert np.all(short <= 1e-3 * speeds * (1.0 + 1e-2) + 1e-9)
+
+
+def test_a_tumble_that_cannot_be_foretold_is_refused():
+    moments = np.diag([1.0, 1.5, 2.0])
+    with pytest.raises(IntegrationError, match=r"cannot be foretold: .*middle moment"):
+        FreeRotation(moments, np.array([1e-9, 0.3, 0.0]), LONG)
+    FreeRotation(moments, np.array([1e-9, 0.3, 0.0]), 20.0)
+    assert FreeRotation(moments, np.array([0.3, 1e-9, 0.0]), LONG).error < 1e-9
 
 
 def test_a_body_at_rest_tumbles_nowhere():

@@ -25,10 +25,10 @@ class BodyCourse(Protocol):
     """The motion of one body.
 
     Attributes:
-        drift: by how much its poses may be off [rad] and [m], beside rounding.
+        error: by how much its poses may be off [rad] and [m], beside rounding.
     """
 
-    drift: float
+    error: float
 
     def poses(self, times: Array) -> tuple[Array, Array]:
         """Positions (N, 3) of the reference point [m] and rotations (N, 3, 3), in the world."""
@@ -66,7 +66,7 @@ def course_of(body: MovingBody, until: float) -> BodyCourse:
 class _Uniform:
     """Translation at one velocity and rotation at one rate, which is fixed in the body."""
 
-    drift = 0.0
+    error = 0.0
 
     def __init__(self, body: MovingBody, velocity: Array, rate: Array) -> None:
         self._begin, self._turn = body.position, turns_of(body.attitude[None])[0]
@@ -89,7 +89,7 @@ class _Tumbling(_Uniform):
     def __init__(self, body: MovingBody, motion: Tumble, until: float) -> None:
         super().__init__(body, motion.velocity, np.zeros(3))
         self._rotation = _free_rotation(motion.inertia.tobytes(), motion.rate.tobytes(), until)
-        self.drift = self._rotation.drift
+        self.error = self._rotation.error
 
     def poses(self, times: Array) -> tuple[Array, Array]:
         places, _ = super().poses(times)
@@ -108,7 +108,7 @@ def _free_rotation(inertia: bytes, rate: bytes, until: float) -> FreeRotation:
 class _Tabulated:
     """Straight lines and turns at constant rates between the rows of a table."""
 
-    drift = 0.0
+    error = 0.0
 
     def __init__(self, table: Track) -> None:
         self._times, self._places = table.times, table.positions
@@ -146,7 +146,7 @@ class _Tabulated:
 class _Told:
     """Poses that a function tells; its speeds are as stated, or `SceneBodies.excess` shows it."""
 
-    drift = 0.0
+    error = 0.0
 
     def __init__(self, motion: PoseFunction, name: str) -> None:
         self._motion, self._name = motion, name

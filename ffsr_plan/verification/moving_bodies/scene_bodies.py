@@ -70,8 +70,8 @@ class SceneBodies:
         """
         self._courses, self._origin = [course_of(body, until) for body in bodies], origin
         self.reaches: Array = np.array([reach_of(body) for body in bodies])
-        drifts = np.array([course.drift for course in self._courses])
-        self.roundings: Array = (_POSE_ROUNDING + drifts) * (1.0 + self.reaches)
+        errors = np.array([course.error for course in self._courses])
+        self.roundings: Array = (_POSE_ROUNDING + errors) * (1.0 + self.reaches)
 
     def poses(self, times: Array) -> BodyPoses:
         """Poses at times (N,) [s].
