@@ -10,6 +10,7 @@ import numpy as np
 from ffsr_plan.core.checks import unknown_name, whole_number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display import figure_style
+from ffsr_plan.display.body_drawing import chosen_rows, draw_bodies, write_times
 from ffsr_plan.display.figure_style import SERIES, Named, Style
 from ffsr_plan.display.flights.flight_samples import (
     FlightSamples,
@@ -25,6 +26,7 @@ from ffsr_plan.display.path_drawing import (
     mark_ends,
     name_directions,
 )
+from ffsr_plan.display.scenes.body_tracks import body_tracks
 from ffsr_plan.display.scenes.picture_data import Quantity, drawn_solid
 from ffsr_plan.display.scenes.projection import view_axes
 from ffsr_plan.display.scenes.shape_outlines import points_of_extent
@@ -97,6 +99,7 @@ def _own_style(shown: Mapping[str, Quantity]) -> dict[str, tuple[str, str]]:
         "goal": (figure_style.GOAL, "goal"),
         "robot": (figure_style.ROBOT, ""),
         "obstacles": (figure_style.OBSTACLE, ""),
+        "bodies": (figure_style.MOVING, figure_style.MOVING_LABEL),
         "zones": (figure_style.ZONE, ZONE),
         "rests": (figure_style.ROBOT, "rests"),
         "limit": (figure_style.CONTACT, "limit"),
@@ -172,17 +175,9 @@ def _draw_path(
         look: dict[str, Any] = {"ms": 3.5, "zorder": 7, "color": style.colour("rests")}
         ax.plot(*at_rest.T, "o", label=style.label("rests"), **look)
     mark_ends(ax, style)
-    for row in rows:
-        ax.annotate(
-            f"{samples.times[row]:.3g} s",
-            tuple(track[row]),
-            (0, 7),
-            textcoords="offset points",
-            ha="center",
-            fontsize=8,
-            zorder=8,
-            bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75},
-        )
+    bodies = body_tracks(problem.scene, samples.times)
+    written = write_times(ax, track, rows, samples.times)
+    draw_bodies(ax, bodies, chosen_rows(rows), view[:2], style, written, _LETTERS)
     name_directions(ax, problem, "path", leaves_plane=False)
     draw_named_zones(ax, problem, view, style, _LETTERS)
     if problem.scene.keep_in:
