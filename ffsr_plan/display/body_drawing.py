@@ -42,8 +42,14 @@ class TimedLabel(NamedTuple):
 
 
 def chosen_rows(rows: Sequence[int]) -> list[int]:
-    """Those of the silhouettes' rows at which bodies are drawn, from the first to the last."""
-    chosen = np.linspace(0, len(rows) - 1, min(_INSTANTS, len(rows))).round().astype(int)
+    """Those of the silhouettes' rows at which bodies are drawn, from the first to the last.
+
+    They are at equal steps if three or more are possible at such.
+    """
+    last = len(rows) - 1
+    even = [k for k in range(_INSTANTS - 1, 1, -1) if last % k == 0]
+    steps = even[0] if even else min(_INSTANTS - 1, last)
+    chosen = np.linspace(0, last, steps + 1).round().astype(int)
     return [rows[k] for k in chosen]
 
 

@@ -116,18 +116,11 @@ def path_figure(
         times = write_times(ax, across, chosen_rows(rows), samples.times)
         draw_bodies(ax, bodies, chosen_rows(rows), axes[:2], style, times)
     if not solid.all():
-        grey = style.colour("obstacles")
-        ax.plot([], [], "o", color=grey, label=style.label("obstacles"))
-        ax.plot([], [], "o", color=grey, alpha=0.2, label="others")
+        _name_faint(ax, style)
     name_directions(ax, problem, view, _leaves_plane(plan))
     draw_named_zones(ax, problem, axes, style)
     ax.set_title(_path_title(plan))
-    if own_figure:
-        fit_height(figure, ax)
-        columns = 4 if bodies else 5
-        figure.legend(frameon=False, loc="outside lower center", ncols=columns)
-    else:
-        ax.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=5)
+    _add_legend(figure, ax, own_figure, 4 if bodies else 5)
     return figure
 
 
@@ -248,6 +241,22 @@ def figure_files(plan: PlanData) -> dict[str, bytes]:
         "convergence.png": convergence_figure(plan),
     }
     return {name: figure_bytes(figure, ".png") for name, figure in figures.items()}
+
+
+def _name_faint(ax: Axes, style: Style) -> None:
+    """Entries in the legend of obstacles that are solid, and of those that are faint."""
+    grey = style.colour("obstacles")
+    ax.plot([], [], "o", color=grey, label=style.label("obstacles"))
+    ax.plot([], [], "o", color=grey, alpha=0.2, label="others")
+
+
+def _add_legend(figure: Figure, ax: Axes, own_figure: bool, columns: int) -> None:
+    """The legend below the axes, and a height that fits if the figure is our own."""
+    if own_figure:
+        fit_height(figure, ax)
+        figure.legend(frameon=False, loc="outside lower center", ncols=columns)
+    else:
+        ax.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=columns)
 
 
 def _path_title(plan: PlanData) -> str:

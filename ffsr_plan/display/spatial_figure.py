@@ -113,8 +113,7 @@ def spatial_figure(
     """
     figure, ax3 = _axes_in_space(ax)
     faces, scene = _Faces([], []), problem.scene
-    ball, count = _ball(10), len(scene.radii)
-    near = solid[:count]
+    ball, count, near = _ball(10), len(scene.radii), solid[: len(scene.radii)]
     for center, radius in zip(scene.centers[near], scene.radii[near], strict=True):
         faces.add(center + radius * ball, style.colour("obstacles"), 1.0)
     for each in np.flatnonzero(solid[count:]):
@@ -141,8 +140,6 @@ def spatial_figure(
             ax3.text(x, y, z, label.text, ha="center", fontsize=8)
     if bodies:
         _write_times(ax3, bodies, frames, chosen_rows(rows), (low, high), style)
-        text = legend_text(style, bodies[0].times[chosen_rows(rows)])
-        ax3.plot([], [], "s", ms=7, color=style.colour("bodies"), label=text)
     _set_view(ax3, problem, low, high)
     _draw_zones(ax3, scene.keep_in, low, high, style)
     columns = 4 if scene.keep_in or bodies else 3
@@ -159,7 +156,9 @@ def _write_times(
     limits: tuple[Array, Array],
     style: Style,
 ) -> None:
-    """Times of the robot, and in their colour those of few bodies, within the limits."""
+    """Times of the robot, and in their colour those of few bodies, and an entry in the legend."""
+    legend = legend_text(style, bodies[0].times[list(rows)])
+    ax.plot([], [], "s", ms=7, color=style.colour("bodies"), label=legend)
     size = float(np.max(limits[1] - limits[0]))
     box = {"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.7}
     times, origins = bodies[0].times, frames.origins[:, 0]

@@ -22,7 +22,7 @@ from ffsr_plan.bodies.tumble import Tumble
 from ffsr_plan.core import rotations
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display import figures
-from ffsr_plan.display.body_drawing import FreeRoom, TimedLabel, timed_labels
+from ffsr_plan.display.body_drawing import FreeRoom, TimedLabel, chosen_rows, timed_labels
 from ffsr_plan.display.flights.flight_figure import flight_figure
 from ffsr_plan.display.flights.flight_movie import write_flight_movie
 from ffsr_plan.display.flights.flight_page import flight_page
@@ -300,6 +300,14 @@ def test_labels_of_a_body_are_at_it_at_their_times():
     assert [label.text for label in together] == ["debris\n0, 10, 20, 30, 40 s"]
 
 
+@pytest.mark.parametrize(
+    ("count", "expected"),
+    [(2, [0, 1]), (3, [0, 1, 2]), (6, [0, 1, 2, 4, 5]), (7, [0, 2, 4, 6]), (9, [0, 2, 4, 6, 8])],
+)
+def test_bodies_are_drawn_at_some_of_the_silhouettes_times(count, expected):
+    assert chosen_rows(range(count)) == expected
+
+
 def test_labels_hide_no_other_label():
     room = FreeRoom(10.0)
     first = TimedLabel("0 s", np.zeros(2))
@@ -434,6 +442,7 @@ def test_pictures_of_a_flight_show_bodies_and_say_what_is_not_proven(flown, tmp_
     assert "not proven past moving bodies" in figure.get_suptitle()
     texts = [t.get_text() for t in figure.axes[0].texts if t.get_color() == "#c2528b"]
     assert texts[0] == "debris\n0 s"
+    assert "clearance\n[m]" in [ax.get_ylabel() for ax in figure.axes]
     write_flight_movie(flown, tmp_path / "flight.gif", speed=flown.flight.duration / 0.4)
 
 

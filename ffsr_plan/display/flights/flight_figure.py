@@ -43,6 +43,7 @@ _WIDTH, _PANEL_HEIGHT = 8.0, 1.25  # [inches]
 _SHARE = 0.72  # of the width that axes have beside their legends
 _MOST_NAMED = 8  # curves of a panel that the legend names one by one
 _LETTERS = 20  # of a line in the legend beside the path
+_LETTERS_OF_BODIES = 14  # so that no line is broken at a time
 _FAR = 2.5  # peaks above which a limit is not drawn but written
 _LINES = ("-", "--", ":")
 _MARK = "#c9ccd1"  # of the times of silhouettes
@@ -61,7 +62,8 @@ def flight_figure(
     Args:
         flown: the flight and its problem.
         axes: matplotlib axes by what is to be drawn on them, `path` or a name in `QUANTITIES`;
-            by default those of a new figure with the path and all that changes but the clearance.
+            by default those of a new figure with the path and all that changes, the clearance only
+            where bodies move.
         silhouettes: of the robot, at equal steps of time.
         colours: matplotlib colours by name.
         labels: texts in the legends by name.
@@ -80,7 +82,8 @@ def flight_figure(
     style = Style(_own_style(shown), colours, labels)
     rows = np.searchsorted(times, marks).tolist()
     if axes is None:
-        figure, axes = _new_figure(flown, samples, [n for n in shown if n != "clearance"])
+        hidden = () if flown.problem.scene.bodies else ("clearance",)
+        figure, axes = _new_figure(flown, samples, [n for n in shown if n not in hidden])
     else:
         figure = _figure_of(axes, shown)
     for name, ax in axes.items():
@@ -177,10 +180,10 @@ def _draw_path(
     mark_ends(ax, style)
     bodies = body_tracks(problem.scene, samples.times)
     written = write_times(ax, track, rows, samples.times)
-    draw_bodies(ax, bodies, chosen_rows(rows), view[:2], style, written, _LETTERS)
+    draw_bodies(ax, bodies, chosen_rows(rows), view[:2], style, written, _LETTERS_OF_BODIES)
     name_directions(ax, problem, "path", leaves_plane=False)
     draw_named_zones(ax, problem, view, style, _LETTERS)
-    if problem.scene.keep_in:
+    if problem.scene.keep_in or bodies:
         ax.set_anchor("W")  # leaves the room to the legend
     ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
 
