@@ -44,6 +44,23 @@ class Pace:
         time = np.where(nearer < 0.5 * speed * ramp, slow, nearer / speed + 0.5 * ramp)
         return self.duration * np.where(share <= 0.5, time, 1.0 - time)
 
+    def places(self, times: Array) -> Array:
+        """Places on the path at times: the inverse of `instants`.
+
+        Args:
+            times: (...) from 0 to the duration [s].
+
+        Returns:
+            (...) places, from 0, the start, to m, the goal.
+        """
+        share = np.asarray(times) / self.duration
+        if self.ramp == 0.0:
+            return share * self.edges
+        nearer = np.minimum(share, 1.0 - share)  # to begin or end
+        speed, ramp = 1.0 / (1.0 - self.ramp), self.ramp
+        run = np.where(nearer < ramp, 0.5 * nearer**2 / ramp, nearer - 0.5 * ramp)
+        return self.edges * np.where(share <= 0.5, speed * run, 1.0 - speed * run)
+
     def is_even(self, edge: int) -> bool:
         """Whether progress is uniform in time over an edge.
 

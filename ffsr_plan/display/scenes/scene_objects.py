@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
+from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_mesh, key_rows, points_near
 from ffsr_plan.display.scenes.meshcat_objects import (
     MeshcatNode,
     instances,
@@ -28,11 +31,18 @@ TRACK, TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)  # colours of the base's and
 _MARGIN = 0.3  # around the scene [m]
 _TRIANGLES = 90_000  # of solid and of faint obstacles each; more obstacles are drawn less round
 _ZONE, _ZONE_LINES = 0x8FA0BF, 0xB9C6DE
+_MOVING, _WAY = 0xE07BB0, (0.42, 0.23, 0.33)  # colours of bodies that move, and of their ways
 START, GOAL, _OBSTACLE, _FAINT = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
 _GLOW = np.array([(0.14, 0.10, 0.29), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
 
 
-def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) -> dict[str, Any]:
+def set_up(
+    viewer: MeshcatNode,
+    problem: Problem,
+    centers: Array,
+    radii: Array,
+    tracks: Sequence[BodyTrack] = (),
+) -> dict[str, Any]:
     """Set light and background, and rotate the scene so that the path runs from left to right.
 
     Args:
@@ -41,6 +51,7 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
         centers: (..., g, 3) centres of spheres around the robot in the world [m], all of which the
             camera has to see.
         radii: (g,) their radii [m].
+        tracks: bodies that move, which the camera sees where they are near all else.
 
     Returns:
         Size (3) of the scene to the right, upwards and towards the viewer [m], field of view
@@ -63,6 +74,7 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
         points.append(scene.centers @ axes.T + sign * scene.radii[:, None])
     points.append(points_of_extent(scene) @ axes.T)
     cloud = np.vstack(points)
+    cloud = np.vstack([cloud, points_near(tracks, cloud, axes)])
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     root = np.eye(4)
     root[:3, :3] = axes
@@ -93,6 +105,50 @@ def add_obstacles(viewer: MeshcatNode, scene: Scene, drawn_solid: Flags) -> None
             rings = int(np.clip(math.sqrt(_TRIANGLES / len(bodies) / 4.0), 6, ROUND))
             mesh = joined([mesh_of(scene.shapes[k], rings) for k in bodies])
             viewer[f"{name}_shapes"].set_object(triangle_mesh(*mesh), material)
+
+
+def add_bodies(viewer: MeshcatNode, tracks: Sequence[BodyTrack], up: Array) -> None:
+    """Add bodies that move, where they are in the first frame, and the ways of their middles.
+
+    Args:
+        viewer: the node that receives them, the k-th body as its child k.
+        tracks: the bodies.
+        up: (3,) direction that the ways face.
+    """
+    import meshcat.geometry as mg
+
+    material = mg.MeshPhongMaterial(color=_MOVING, shininess=60)
+    count = sum(len(track.body.shapes) for track in tracks)
+    rings = int(np.clip(math.sqrt(_TRIANGLES / max(count, 1) / 4.0), 6, ROUND))
+    for k, track in enumerate(tracks):
+        node = viewer[str(k)]
+        node["shapes"].set_object(triangle_mesh(*body_mesh(track.body, rings)), material)
+        node.set_transform(_pose(track, 0))
+        if track.moves_away:
+            middles = track.middles()
+            way = middles[key_rows(middles, 1e-2)]
+            add_track(viewer["ways"][str(k)], way, 0.014, _WAY, up)
+
+
+def add_body_ghosts(viewer: MeshcatNode, tracks: Sequence[BodyTrack], rows: Sequence[int]) -> None:
+    """Add transparent copies of bodies that move, where they are in some frames (rows)."""
+    import meshcat.geometry as mg
+
+    material = mg.MeshPhongMaterial(color=_MOVING, opacity=0.2, depthWrite=False)
+    for k, track in enumerate(tracks):
+        mesh = triangle_mesh(*body_mesh(track.body, 12))
+        for row in rows:
+            node = viewer[str(k)][str(row)]
+            node.set_object(mesh, material)
+            node.set_transform(_pose(track, row))
+
+
+def _pose(track: BodyTrack, row: int) -> Array:
+    """(4, 4) placement of a body's axes in the world in one frame."""
+    placed = np.eye(4)
+    placed[:3, :3] = rotations.matrix(track.attitudes[row])
+    placed[:3, 3] = track.positions[row]
+    return placed
 
 
 def shown_box(scene: Scene, centers: Array, radii: Array) -> tuple[Array, Array]:
