@@ -21,6 +21,8 @@ from ffsr_plan.core.settings import setting, settings
 _STILL = (0.0, 0.0, 0.0)
 _STEP_ANGLE = 2e-3  # [rad] that the fastest rate turns in a step: errors of 1e-12 a radian
 _MOST_STEPS = 5_000_000
+_LAST_DIGITS = 1e-15  # relative, of a rate
+_POSE_ERROR = 1e-9  # [rad] that poses may be in error, as proofs assume
 
 
 @dataclass(frozen=True)
@@ -51,11 +53,15 @@ class _Nodes(NamedTuple):
     step: float
     rates: Array
     attitudes: Array
+    reliable_until: float
 
 
 @settings
 class Tumble:
     """Free rotation of a rigid body about its centre of mass, the reference point.
+
+    About an axis close to that of the middle moment the motion is unstable. It is known for as long
+    as a change of the rates' last digits moves its attitudes by less than 1e-9 rad.
 
     Attributes:
         inertia: (3, 3) about the centre of mass, body axes, or three moments along them [kg m^2];
@@ -132,14 +138,25 @@ class Tumble:
         count = max(1, math.ceil(self.known_until * self.largest_rate / _STEP_ANGLE))
         step = self.known_until / count
         start, rate = _quaternion(axes), axes.T @ self.rate
-        rates, attitudes = tumble(moments, rate, start, np.full(count, step))
-        return _Nodes(step, frozen(rates), frozen(attitudes))
+        steps = np.full(count, step)
+        rates, attitudes = tumble(moments, rate, start, steps)
+        # near the middle axis a difference in the last digits grows exponentially
+        near = rate + _LAST_DIGITS * self.largest_rate * np.array([1.0, -1.0, 1.0])
+        _, others = tumble(moments, near, start, steps)
+        turned = np.linalg.norm(attitudes - others, axis=1)
+        far = np.flatnonzero(turned > 0.5 * _POSE_ERROR)
+        until = (int(far[0]) - 1) * step if len(far) else self.known_until
+        return _Nodes(step, frozen(rates), frozen(attitudes), until)
 
     def _states(self, times: Array) -> tuple[Array, Array]:
         """(n, 3) rates along the principal axes, and (n, 4) attitudes of these axes at times."""
         from ffsr_plan.bodies.tumble_kernel import tumble
 
         nodes, (moments, _) = self._nodes, self._principal
+        if np.max(times, initial=0.0) > nodes.reliable_until:
+            until = f"at most {nodes.reliable_until:.4g} s for this tumble about its middle axis"
+            allowed = f"{until}, whose poses later on depend on digits that no rate is known to"
+            raise InvalidInput("times", float(np.max(times)), allowed)
         at = np.clip((times / nodes.step).astype(np.int64), 0, len(nodes.rates) - 1)
         rates, attitudes = np.empty((len(times), 3)), np.empty((len(times), 4))
         for k, (node, time) in enumerate(zip(at.tolist(), times.tolist(), strict=True)):

@@ -51,8 +51,8 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
     lattice = None
     if problem.lattice is not None:
         _check_nodes(what, table, problem.lattice)
-    if problem.lattice is not None and problem.lattice.progress is None:
-        lattice = _within(what, "problem.lattice", lambda: LayeredLattice(problem))
+        if problem.lattice.progress is None:
+            lattice = _within(what, "problem.lattice", lambda: LayeredLattice(problem))
     _within(what, "planner", lambda: table.planner.refuse(problem))
     check_search(what, table, problem)
     least = table.certificate.least_clearance

@@ -15,6 +15,7 @@ from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.problem.memory_estimate import check_lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.refinement.refined_path import refined_path
+from ffsr_plan.search.progress_solution import solve_with_progress
 from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult, Solution
 from ffsr_plan.search.workers import in_process, run_on_workers
 
@@ -80,6 +81,8 @@ class LatticePlanner(ABC):
             WorkerDied: a worker process ended without a result.
         """
         self.refuse(problem)
+        if problem.given_lattice.progress is not None:
+            return solve_with_progress(problem, request)
         check_lattice(problem, self.bytes_per_edge, getattr(self, "ants", 0))
         roadmap = Roadmap(problem, request.deadline)
         roadmap.deadline.stage = "the search for a path"

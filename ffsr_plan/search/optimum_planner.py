@@ -12,13 +12,10 @@ from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.lattice_planner import LatticePlanner
-from ffsr_plan.search.progress_solution import solve_with_progress
 from ffsr_plan.search.records import (
     History,
     SearchMonitor,
-    SearchRequest,
     SearchResult,
-    Solution,
     Trails,
 )
 
@@ -39,12 +36,6 @@ class LatticeOptimum(LatticePlanner):
         """Raise `InvalidInput` if the planner cannot solve the problem, naming one that can."""
         if problem.lattice is None or problem.lattice.progress is None:
             super().refuse(problem)
-
-    def solve(self, problem: Problem, rng: np.random.Generator, request: SearchRequest) -> Solution:
-        """See `LatticePlanner.solve`; on a lattice with progress too."""
-        if problem.given_lattice.progress is not None:
-            return solve_with_progress(problem, request)
-        return super().solve(problem, rng, request)
 
     def search(
         self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None

@@ -80,3 +80,13 @@ def test_the_angle_is_never_above_its_bound_and_near_it(seed):
 def test_an_inertia_that_no_body_has_is_refused(value):
     with pytest.raises(InvalidInput, match="inertia"):
         Tumble(value, (0.1, 0.0, 0.0))
+
+
+def test_a_tumble_about_the_middle_axis_is_known_for_as_long_as_its_digits_tell():
+    wild = Tumble((1.0, 1.5, 2.0), (1e-9, 0.3, 0.0), known_until=600.0)
+    with pytest.raises(InvalidInput, match="middle axis"):
+        wild.poses(np.array([600.0]))
+    early = wild.poses(np.linspace(0.0, 20.0, 5))
+    assert np.all(np.isfinite(early.attitudes))
+    tame = Tumble((1.0, 1.5, 2.0), (0.02, 0.0, 0.3), known_until=3600.0)
+    assert np.all(np.isfinite(tame.poses(np.array([3600.0])).attitudes))

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from ffsr_plan.collision.body_distances import in_axes
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display.scenes.body_tracks import BodyTrack
 from ffsr_plan.display.scenes.picture_data import MotionFrames
-from ffsr_plan.proof.body_edge import in_axes
 from ffsr_plan.scene.scene import Scene
 
 
