@@ -69,12 +69,11 @@ class LatticePlanner(ABC):
         """Search the problem's lattice, state the optimum, refine the path and certify it.
 
         Args:
-            problem: a problem without posture axes.
+            problem: a problem without posture axes, which `refuse` refuses.
             rng: source of randomness.
             request: colonies, workers, refinement, callback and stopping condition.
 
         Raises:
-            InvalidInput: the lattice has posture axes.
             StartInCollision, GoalInCollision: with link, obstacle and depth.
             NoPath: the lattice holds no free path, with the layer that cannot be passed.
             PlanningError: no path was found; `OutOfTime` if none was proven in time.
@@ -111,11 +110,10 @@ class LatticePlanner(ABC):
         roadmap.deadline.close()
         moved = motion.positions - lattice.nominal.positions
         least, cut = proven_clearance(prover, moved, clearances)
-        indices = lattice.indices[result.path]
         return Solution(
             lattice=lattice,
             motion=motion,
-            nodes=frozen(indices if indices.shape[1] > 1 else indices.sum(axis=1)),
+            nodes=lattice.indices_along(result.path),
             length=length,
             objective=objective,
             lattice_objective=lattice_objective,
