@@ -196,9 +196,10 @@ def _on_times(plane, space):
     words = paragraph(
         f"Processor time of `plan` on {os.cpu_count()} slow cores that other work used too (load "
         f"{min(loads):.1f} to {max(loads):.1f}). In the same run the static optimum of `fig2a` "
-        f"took {1000 * reference:.0f} ms in the median; ratios are to its median beside each row. In space a satellite "
-        "with a UR5 moves 10 m past four satellites, one of each motion, on 81 offsets of 0.5 m "
-        f"and 25 places: {solved} of {len(space)} scenes are solved."
+        f"took {1000 * reference:.0f} ms in the median; ratios are to its median while a row's "
+        "scenes were planned. In space a satellite with a UR5 moves 10 m past four satellites, "
+        "one of each motion, on 81 offsets of 0.5 m and 25 places: "
+        f"{solved} of {len(space)} scenes are solved."
     )
     heads = ["", "scenes", "median [s]", "worst [s]", "median ratio", "worst ratio"]
     return ["## Time", words, table(heads, rows)]
@@ -224,9 +225,12 @@ def _on_samples(sampled):
     """OMPL's paths, looked at in the same way."""
     found = [run for run in sampled if run.seconds < np.inf]
     scenes = {(run.family, run.seed) for run in sampled}
+    kinds = [sum(family == name for family, _ in scenes) for name in FAMILIES]
+    of_each = ", ".join(f"{name} {n}" for name, n in zip(FAMILIES, kinds, strict=True))
     bad = [run for run in found if run.least <= 0.0]
     words = paragraph(
-        f"OMPL 2.0.1 plans x, y and time in {len(scenes)} scenes that neither fixed pace solves, "
+        f"OMPL 2.0.1 plans x, y and time in {len(scenes)} scenes that neither fixed pace solves "
+        f"({of_each}), "
         f"{len(sampled) // len(scenes)} runs each: `control.RRT` with velocities of at most 0.2 "
         "m/s each way, joints and attitude by progress as in the waiting lattice, at most 60 "
         "000 checked states a run. At its default resolution it checks states at 1 % of the "
@@ -240,6 +244,12 @@ def _on_samples(sampled):
     row += [f"{np.median([run.seconds for run in found]):.1f}" if found else ""]
     heads = ["runs", "paths", "that collide", "scenes with such", "depth [cm]", "median time [s]"]
     return ["## A sampled planner at its default resolution", words, table(heads, [row])]
+
+
+def spread(scenes, count):
+    """At most `count` of the scenes, evenly spread over their list and so over the families."""
+    rows = np.linspace(0, len(scenes) - 1, min(count, len(scenes))).round().astype(np.int64)
+    return [scenes[k] for k in rows]
 
 
 def report(plane, space, sampled, options):
@@ -281,7 +291,7 @@ def main() -> None:
         from benchmarks.studies.moving.ompl_in_time import sampled_runs
 
         left = [(run.family, run.seed) for run in plane if not run.solved]
-        for each in sampled_runs(left[:: max(1, len(left) // args.ompl)][: args.ompl]):
+        for each in sampled_runs(spread(left, args.ompl)):
             sampled.append(each)
             print(each, flush=True)
     options = f" --scenes {args.scenes} --in-space {args.in_space} --ompl {args.ompl}"
