@@ -56,8 +56,8 @@ def test_the_page_of_a_wide_scene_shows_the_robot(name, tmp_path):
             for node in ("robot", "ghosts"):
                 tab.ask(f"viewer.set_property(['meshcat', '{node}'], 'visible', {shown})")
             tab.ask(
-                "window.drawn = 0; viewer.set_dirty(); requestAnimationFrame(() => requestAnimationFrame(() => "
-                "requestAnimationFrame(() => { window.drawn = 1; })))"
+                "window.drawn = 0; viewer.set_dirty(); "
+                "requestAnimationFrame(() => requestAnimationFrame(() => { window.drawn = 1; }))"
             )
             tab.wait_until("window.drawn === 1")
             tab.shoot(tmp_path / "page.png")
