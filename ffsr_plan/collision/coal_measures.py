@@ -12,6 +12,7 @@ from itertools import product
 import coal
 import numpy as np
 
+from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.meshes.mesh_files import hull
@@ -122,6 +123,22 @@ class CoalMeasures:
             result.clear()  # a new one would take longer than the measurement
             distances.append(self._to_ball[shape](shape_frame, ball_frame, request, result))
         return distances
+
+    def reach(self, placed: Placements, directions: Array) -> Array:
+        """How far all shapes of the robot extend in a scene with zones.
+
+        Args:
+            placed: one placement of the shapes.
+            directions: (d, 3) unit vectors, world axes.
+
+        Returns:
+            (d,) along each of them, from the world's origin [m].
+        """
+        found = np.full(len(directions), -np.inf)
+        for k, (corners, skin) in enumerate(self._corners):
+            points = corners @ placed.rotations[0, k].T + placed.positions[0, k]
+            found = np.maximum(found, (points @ directions.T).max(axis=0) + skin)
+        return found
 
     def is_sphere(self, row: int) -> bool:
         """Whether an obstacle is a sphere.

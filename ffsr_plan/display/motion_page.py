@@ -27,9 +27,9 @@ from ffsr_plan.display.scenes.scene_objects import (
     add_trails,
     add_zones,
     set_up,
-    shown_box,
 )
 from ffsr_plan.display.scenes.shape_outlines import labels
+from ffsr_plan.display.scenes.shown_space import shown_space
 from ffsr_plan.display.scenes.timed_clearances import nearest_passes
 from ffsr_plan.display.scenes.zone_outlines import name_places
 from ffsr_plan.display.web.html_template import html_page
@@ -215,7 +215,7 @@ def obstacle_names(scene: Scene) -> list[dict[str, Any]]:
 
 def _zone_names(scene: Scene, centers: Array, radii: Array) -> list[dict[str, Any]]:
     """Names of zones, at a corner of each; the rest as of `add_zones`."""
-    places = name_places(scene.keep_in, *shown_box(scene, centers, radii))
+    places = name_places(scene.keep_in, *shown_space(scene, centers, radii))
     return [_name(name, at) for name, at in places[:_MOST_NAMES]]
 
 

@@ -31,6 +31,7 @@ from ffsr_plan.scene.scene_contents import (
     member_title,
     row_count,
 )
+from ffsr_plan.scene.shapes.extents import extents
 from ffsr_plan.scene.shapes.keep_in_zones import ZONES, Zone
 from ffsr_plan.scene.shapes.obstacle_shapes import SHAPES, ObstacleShape
 from ffsr_plan.scene.shapes.obstacle_tree import ObstacleTree, obstacle_tree
@@ -372,11 +373,10 @@ class Scene:
 
     def bounds(self) -> Array:
         """(2, 3) least and greatest coordinates of what is at rest [m]; (0, 3) without any."""
-        spheres = self.at_rest.tree.spheres
-        if not len(spheres):
-            return np.zeros((0, 3))
-        low, high = spheres[:, :3] - spheres[:, 3:], spheres[:, :3] + spheres[:, 3:]
-        return np.stack([low.min(axis=0), high.max(axis=0)])
+        radii, ends = self.radii[:, None], extents(self.shapes)
+        low = np.vstack([self.centers - radii, ends[:, 0] - self.growth])
+        high = np.vstack([self.centers + radii, ends[:, 1] + self.growth])
+        return np.stack([low.min(axis=0), high.max(axis=0)]) if len(low) else np.zeros((0, 3))
 
     def _extent(self) -> str:
         """The box around spheres and shapes, in words."""

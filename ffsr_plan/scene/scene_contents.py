@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from ffsr_plan.core.checks import whole_number
-from ffsr_plan.core.contacts import ShapeName, ZoneName
+from ffsr_plan.core.contacts import RoundName, ShapeName, ZoneName
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted
+
+_ROUND = ("cylinder", "ellipsoid")  # obstacles in which depths are not known
 
 
 def checked_members(what: str, given: object, kinds: tuple[type, ...]) -> tuple[Any, ...]:
@@ -46,7 +48,10 @@ def member_title(members: Mapping[str, Sequence[Any]], place: int) -> str:
         return ""
     field, member = listed[place]
     text = f"{member.word} '{member.name}'" if member.name else f"{member.word} ({field})"
-    return ZoneName(text) if field.startswith("keep_in") else ShapeName(text)
+    if field.startswith("keep_in"):
+        return ZoneName(text)
+    parts = getattr(member, "shapes", (member,))
+    return (RoundName if any(part.word in _ROUND for part in parts) else ShapeName)(text)
 
 
 def contents(spheres: int, members: Mapping[str, Sequence[Any]]) -> str:
