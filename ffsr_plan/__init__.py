@@ -14,6 +14,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ffsr_plan import errors
+    from ffsr_plan.bodies.body_motion import Drift, Poses, Spin
+    from ffsr_plan.bodies.moving_body import MovingBody
+    from ffsr_plan.bodies.pace import Pace
+    from ffsr_plan.bodies.pose_function import PoseFunction
+    from ffsr_plan.bodies.track import Track
+    from ffsr_plan.bodies.tumble import Tumble
     from ffsr_plan.collision.clearance import Clearance, clearance
     from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
     from ffsr_plan.core.contacts import Contact
@@ -34,6 +40,7 @@ if TYPE_CHECKING:
         UncheckedLinks,
         UnprovenCurve,
         UnprovenPath,
+        WideTurns,
         WorkerDied,
     )
     from ffsr_plan.curves.curved_motion import CurvedMotion
@@ -63,7 +70,7 @@ if TYPE_CHECKING:
     from ffsr_plan.planning.smooth_plan import SmoothPlan
     from ffsr_plan.planning.warm_up import warm_up
     from ffsr_plan.portfolio.portfolio_planner import Portfolio
-    from ffsr_plan.problem.lattice_settings import Axis, Lattice
+    from ffsr_plan.problem.lattice_settings import Axis, Lattice, Progress
     from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
     from ffsr_plan.problem.problem import Problem
     from ffsr_plan.proof.interval_halving import Verdict
@@ -80,10 +87,10 @@ if TYPE_CHECKING:
     from ffsr_plan.satellites.composition import Mount, compose
     from ffsr_plan.scenario_files.scenario import Scenario, load_scenario
     from ffsr_plan.scene import generators
-    from ffsr_plan.scene.keep_in_zones import HalfSpace
-    from ffsr_plan.scene.mesh_hulls import mesh_hulls
-    from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
     from ffsr_plan.scene.scene import Scene
+    from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+    from ffsr_plan.scene.shapes.mesh_hulls import mesh_hulls
+    from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
     from ffsr_plan.search.ants.ant_system import AntSystem
     from ffsr_plan.search.ants.max_min import MaxMinAntSystem
     from ffsr_plan.search.fuel_figures import FuelFigures
@@ -123,6 +130,7 @@ __all__ = [
     "CurvedMotion",
     "Cycle",
     "Cylinder",
+    "Drift",
     "EdgeProof",
     "Ellipsoid",
     "FfsrPlanError",
@@ -148,8 +156,10 @@ __all__ = [
     "Mode",
     "Motion",
     "Mount",
+    "MovingBody",
     "NoPath",
     "OutOfTime",
+    "Pace",
     "PageServer",
     "Panel",
     "PathNotFound",
@@ -157,11 +167,14 @@ __all__ = [
     "PlanNotVerified",
     "PlanningError",
     "Portfolio",
+    "PoseFunction",
     "PoseOutOfReach",
+    "Poses",
     "PostureAnnealing",
     "PostureAxis",
     "PostureTarget",
     "Problem",
+    "Progress",
     "RateLimits",
     "Replacement",
     "Report",
@@ -177,17 +190,21 @@ __all__ = [
     "SmoothPlan",
     "Solution",
     "SpaceRobot",
+    "Spin",
     "StartInCollision",
     "States",
     "TimedPlan",
+    "Track",
     "Trails",
     "TreeCycle",
     "TreePlanner",
+    "Tumble",
     "UncheckedLinks",
     "UnprovenCurve",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",
+    "WideTurns",
     "WorkerDied",
     "arm_names",
     "certify_edge",
@@ -209,6 +226,12 @@ __all__ = [
 ]
 
 _NAMES = {  # by module; each is loaded when one of its names is first used
+    "bodies.body_motion": ("Drift", "Poses", "Spin"),
+    "bodies.moving_body": ("MovingBody",),
+    "bodies.pace": ("Pace",),
+    "bodies.pose_function": ("PoseFunction",),
+    "bodies.track": ("Track",),
+    "bodies.tumble": ("Tumble",),
     "collision.clearance": ("Clearance", "clearance"),
     "collision.self_collisions": ("SelfCollision", "SelfCollisions", "self_collisions"),
     "core.contacts": ("Contact",),
@@ -229,6 +252,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "UncheckedLinks",
         "UnprovenCurve",
         "UnprovenPath",
+        "WideTurns",
         "WorkerDied",
     ),
     "curves.curved_motion": ("CurvedMotion",),
@@ -252,7 +276,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "planning.smooth_plan": ("SmoothPlan",),
     "planning.warm_up": ("warm_up",),
     "portfolio.portfolio_planner": ("Portfolio",),
-    "problem.lattice_settings": ("Axis", "Lattice"),
+    "problem.lattice_settings": ("Axis", "Lattice", "Progress"),
     "problem.posture_axes": ("PostureAxis", "PostureTarget"),
     "problem.problem": ("Problem",),
     "proof.interval_halving": ("Verdict",),
@@ -268,9 +292,9 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "satellites.bus": ("Bus", "Panel"),
     "satellites.composition": ("Mount", "compose"),
     "scenario_files.scenario": ("Scenario", "load_scenario"),
-    "scene.keep_in_zones": ("HalfSpace",),
-    "scene.mesh_hulls": ("mesh_hulls",),
-    "scene.obstacle_shapes": ("Ball", "Box", "Capsule", "Cylinder", "Ellipsoid", "Hull"),
+    "scene.shapes.keep_in_zones": ("HalfSpace",),
+    "scene.shapes.mesh_hulls": ("mesh_hulls",),
+    "scene.shapes.obstacle_shapes": ("Ball", "Box", "Capsule", "Cylinder", "Ellipsoid", "Hull"),
     "scene.scene": ("Scene",),
     "search.ants.ant_system": ("AntSystem",),
     "search.ants.max_min": ("MaxMinAntSystem",),

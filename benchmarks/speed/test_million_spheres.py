@@ -5,7 +5,7 @@ import pytest
 
 import ffsr_plan as fp
 from benchmarks.speed.reference import Reference, record
-from ffsr_plan.scene.sphere_tree import sphere_tree
+from ffsr_plan.scene.shapes.sphere_tree import sphere_tree
 
 COUNT = 1_000_000
 

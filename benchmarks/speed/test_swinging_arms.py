@@ -60,12 +60,12 @@ def afloat(seed, count, edges=8):
 def test_proof_of_an_arm_against_its_own_links(benchmark, reference, edges):
     """66 pairs of links on a long edge, and on the same cut into eight."""
     motion, _ = afloat(0, 1, edges)
-    Prover(motion, fp.Scene(), 1e-4).self_verdicts()
+    Prover(motion, fp.Scene(), 1e-4).links.verdicts()
 
     def fresh():
         return (Prover(motion, fp.Scene(), 1e-4),), {}
 
-    benchmark.pedantic(lambda prover: prover.self_verdicts(), setup=fresh, rounds=20)
+    benchmark.pedantic(lambda prover: prover.links.verdicts(), setup=fresh, rounds=20)
     record(benchmark, reference)
 
 
@@ -79,7 +79,7 @@ def test_proof_of_a_path_in_free_float(benchmark, reference, count):
         prover = Prover(motion, scene, 1e-4)
         at = prover.clearances(np.arange(motion.edges + 1), np.zeros((motion.edges + 1, 3)))
         prover.certify_all(layers, none, none, np.column_stack([at[:-1], at[1:]]))
-        return prover.self_verdicts()
+        return prover.links.verdicts()
 
     prove()
     benchmark.pedantic(prove, rounds=20)

@@ -80,6 +80,9 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
     if np.isfinite(report.least_clearance):  # there are obstacles
         least, bound = report.least_clearance, report.clearance_bound
         yield "  least clearance", f"{least:.6f} m measured, at least {bound:.6f} m between samples"
+    if report.nearest_time is not None:
+        near = report.nearest_body or "an obstacle at rest"
+        yield "  nearest obstacle", f"{near}, at {report.nearest_time:.6g} s"
     if np.isfinite(report.least_self_separation):
         yield "  least link-to-link", f"{report.least_self_separation:.6f} m measured"
     if report.momentum_residual is not None:

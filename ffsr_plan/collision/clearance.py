@@ -17,6 +17,9 @@ from ffsr_plan.scene.scene import Scene
 class Clearance(float):
     """A clearance [m], a float, with the pair of link and obstacle.
 
+    Inside a cylinder or ellipsoid it is 0 at any depth, which is not known there, and an obstacle
+    of another shape that is penetrated counts as nearer.
+
     The result of arithmetic, rounding or `min` with a float is a plain float without link and
     obstacle.
 
@@ -58,7 +61,9 @@ def clearance(robot: SpaceRobot, scene: Scene, q: ArrayLike) -> Clearance:
 
     Returns:
         The distance [m], negative in penetration and infinite in an empty scene; its attributes
-        `link` and `obstacle` name the nearest pair.
+        `link` and `obstacle` name the nearest pair. Inside a cylinder or ellipsoid the depth is not
+        known and counts as 0, less what `scene.growth` adds: where another obstacle is penetrated
+        too, that one is named.
 
     Raises:
         InvalidInput: not a robot, a scene or a configuration of that robot.

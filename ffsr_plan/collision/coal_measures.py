@@ -12,13 +12,15 @@ from itertools import product
 import coal
 import numpy as np
 
+from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.meshes.mesh_files import hull
 from ffsr_plan.robots.collision_shapes import convex, sharpen
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.shape_arrays import BOX
-from ffsr_plan.scene.obstacle_shapes import (
+from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.obstacle_shapes import (
     Ball,
     Box,
     Capsule,
@@ -27,9 +29,24 @@ from ffsr_plan.scene.obstacle_shapes import (
     Hull,
     ObstacleShape,
 )
-from ffsr_plan.scene.scene import Scene
 
 _ROUND_FACES = (Cylinder, Ellipsoid)
+ITERATION_ERROR = 1e-7
+"""[m] for distances that Coal iterates to 1e-8."""
+_RELATIVE_ITERATION_ERROR = 4e-9  # for each metre between the centres of the two shapes
+
+
+def iteration_error(robot: SpaceRobot, scene: Scene) -> float:
+    """Bound on the error of distances that Coal iterates [m]; zero where none is.
+
+    Args:
+        robot: the robot.
+        scene: the obstacles.
+    """
+    if bool(robot.primitives.exact.all()) and scene.is_closed_form:
+        return 0.0
+    largest = float(np.max(scene.tree.spheres[:, 3], initial=0.0))
+    return ITERATION_ERROR + _RELATIVE_ITERATION_ERROR * largest
 
 
 def solid_of(shape: ObstacleShape) -> coal.CollisionGeometry:
@@ -106,6 +123,22 @@ class CoalMeasures:
             result.clear()  # a new one would take longer than the measurement
             distances.append(self._to_ball[shape](shape_frame, ball_frame, request, result))
         return distances
+
+    def reach(self, placed: Placements, directions: Array) -> Array:
+        """How far all shapes of the robot extend in a scene with zones.
+
+        Args:
+            placed: one placement of the shapes.
+            directions: (d, 3) unit vectors, world axes.
+
+        Returns:
+            (d,) along each of them, from the world's origin [m].
+        """
+        found = np.full(len(directions), -np.inf)
+        for k, (corners, skin) in enumerate(self._corners):
+            points = corners @ placed.rotations[0, k].T + placed.positions[0, k]
+            found = np.maximum(found, (points @ directions.T).max(axis=0) + skin)
+        return found
 
     def is_sphere(self, row: int) -> bool:
         """Whether an obstacle is a sphere.

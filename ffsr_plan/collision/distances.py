@@ -54,6 +54,7 @@ class ObstacleQuery:
 
     Attributes:
         empty: whether the scene has no obstacles or the robot no shapes.
+        radius: distance of the farthest point of spheres and shapes from the origin, at most [m].
         count: number of configurations whose clearance Coal has measured.
     """
 
@@ -71,6 +72,10 @@ class ObstacleQuery:
         self._bounds_only = not (self._shapes.exact.all() and scene.is_closed_form)
         self.empty = len(scene) == 0 or len(self._shapes.kinds) == 0
         self.count = 0
+        spheres = self._tree.spheres
+        self.radius = float(
+            np.max(np.linalg.norm(spheres[:, :3], axis=1) + spheres[:, 3], initial=0.0)
+        )
         self._at_once = _AT_ONCE
         self._measures = CoalMeasures(robot, scene)
 

@@ -18,7 +18,7 @@ from ffsr_plan.collision.widened_box_kernels import box_distance
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.kernels.compilation import inlined_kernel, kernel
 from ffsr_plan.robots.shape_arrays import BOX
-from ffsr_plan.scene.obstacle_tree import ObstacleTree
+from ffsr_plan.scene.shapes.obstacle_tree import ObstacleTree
 
 STACK_SIZE = 64
 """Entries of a stack for `nearest_obstacle`: a tree of halves has fewer levels than that."""

@@ -17,6 +17,12 @@ class ShapeName(str):
     __slots__ = ()
 
 
+class RoundName(ShapeName):
+    """The name of an obstacle of which it is known that something is inside, but not how deep."""
+
+    __slots__ = ()
+
+
 class ZoneName(ShapeName):
     """The name of a zone that the robot has to stay in, and whose outside is an obstacle."""
 
@@ -30,7 +36,8 @@ class Contact(NamedTuple):
         link: name of the link.
         obstacle: number of the obstacle in the scene, or name of the other link; None in an empty
             scene.
-        depth: penetration depth [m], zero in contact, negative apart.
+        depth: penetration depth [m], zero in contact, negative apart; zero too inside a cylinder
+            or ellipsoid, where it is not known.
         source: what a sphere comes from, such as the name of a mesh, empty where that is unknown;
             a `ShapeName` of other obstacles.
     """
@@ -39,6 +46,11 @@ class Contact(NamedTuple):
     obstacle: int | str | None
     depth: float
     source: str = ""
+
+    @property
+    def is_of_unknown_depth(self) -> bool:
+        """Whether the link is inside an obstacle and nothing is known of how deep."""
+        return isinstance(self.source, RoundName) and self.depth >= 0.0
 
 
 def approach(distance: float) -> str:
@@ -62,6 +74,8 @@ def encounter(distance: float, obstacle: int | str | None, source: str = "") -> 
     """
     if isinstance(source, ZoneName) and distance <= -TOUCHING:
         return f"is {-distance:.4g} m outside of {source}"
+    if isinstance(source, RoundName) and distance <= 0.0:
+        return f"is inside {source}"
     return f"{approach(distance)} {obstacle_name(obstacle, source)}"
 
 

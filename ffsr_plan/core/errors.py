@@ -57,6 +57,10 @@ class InvalidInput(FfsrPlanError, ValueError):
         return f"{what}: got {shortened(self.value)}; allowed: {allowed}"
 
 
+class WideTurns(UserWarning):
+    """A table of attitudes turns so far from row to row that another way may be meant."""
+
+
 class UncheckedLinks(UserWarning):
     """A robot has links with mass but no shape, which nothing keeps clear of obstacles."""
 

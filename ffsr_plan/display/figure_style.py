@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 START, GOAL, PATH, OBSTACLE, ROBOT = "#2a7f9e", "#2f8f4e", "#d95f02", "#9aa0a8", "#3b4252"
-TRAILS, CONTACT, ZONE = "#7a5fa8", "#b02a30", "#5c6168"
+TRAILS, CONTACT, ZONE, MOVING = "#7a5fa8", "#b02a30", "#5c6168", "#c2528b"
+MOVING_LABEL = "moving bodies"
 SERIES = ("#d95f02", "#2a7f9e", "#2f8f4e", "#7a5fa8", "#b8860b", "#3b4252", "#c2528b", "#6b9e2f")
 """Colours of curves that have no meaning of their own, in this order."""
 FORMATS = (".pdf", ".svg", ".png")

@@ -11,6 +11,7 @@ from ffsr_plan.core.checks import one_of, whole_number
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.text_files import write_files
 from ffsr_plan.display import figure_style
+from ffsr_plan.display.body_drawing import chosen_rows, draw_bodies, write_times
 from ffsr_plan.display.figure_style import Named, Style, axes_or_new, figure_bytes, fit_height
 from ffsr_plan.display.path_drawing import (
     draw_named_zones,
@@ -19,8 +20,11 @@ from ffsr_plan.display.path_drawing import (
     mark_ends,
     name_directions,
 )
+from ffsr_plan.display.scenes.body_tracks import body_tracks
 from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames, trail_segments
+from ffsr_plan.display.scenes.plan_samples import sample_plan, times_of
 from ffsr_plan.display.scenes.projection import VIEWS, view_axes
+from ffsr_plan.display.scenes.timed_clearances import clearances
 from ffsr_plan.display.scenes.zone_outlines import ZONE
 from ffsr_plan.display.spatial_figure import spatial_figure
 from ffsr_plan.search.records import Trails
@@ -40,6 +44,7 @@ _OF_PATH = {
     "goal": (figure_style.GOAL, "goal"),
     "robot": (figure_style.ROBOT, ""),
     "obstacles": (figure_style.OBSTACLE, "obstacles near the motion"),
+    "bodies": (figure_style.MOVING, figure_style.MOVING_LABEL),
     "zones": (figure_style.ZONE, ZONE),
     "trails": (figure_style.TRAILS, _ANTS),
 }
@@ -68,15 +73,19 @@ def path_figure(
 ) -> Figure:
     """Path among the obstacles.
 
+    Bodies that move are drawn at up to five of the silhouettes' times, which are written at robot
+    and bodies: what looks like a collision of different times is none.
+
     Args:
         plan: the plan.
-        silhouettes: number of robot silhouettes, at equal steps of the path parameter.
+        silhouettes: number of robot silhouettes, at equal steps of the path parameter, or of time
+            where the problem has a duration.
         ax: matplotlib axes to draw on, with `projection="3d"` for the view `3d`; by default those
             of a new figure.
         view: `path`, seen along the normal y' of the path frame, `side`, along the lateral x', or
             `3d`, in perspective with the axes of the world.
-        colours: matplotlib colours of `path`, `start`, `goal`, `robot`, `obstacles`, `zones` and
-            `trails`.
+        colours: matplotlib colours of `path`, `start`, `goal`, `robot`, `obstacles`, `bodies`,
+            `zones` and `trails`.
         labels: texts in the legend, by the same names.
 
     Returns:
@@ -88,11 +97,12 @@ def path_figure(
     count = whole_number("silhouettes", silhouettes, at_least=2, at_most=100)
     style = Style(_OF_PATH, colours, labels)
     problem, scene = plan.problem, plan.problem.scene
-    track = motion_frames(problem.robot, plan.at(np.linspace(0.0, 1.0, _SAMPLES)))
+    samples = sample_plan(plan, _SAMPLES)
+    track, bodies = samples.frames, body_tracks(scene, samples.times)
     rows = np.linspace(0.0, _SAMPLES - 1.0, count).round().astype(int).tolist()
     solid = drawn_solid(scene, track.bounding_spheres()[0])
     if one_of("view", view, (*VIEWS, "3d")) == "3d":
-        return spatial_figure(problem, track, rows, solid, style, ax, _path_title(plan))
+        return spatial_figure(problem, track, rows, solid, style, ax, _path_title(plan), bodies)
     axes = view_axes(problem)[list(VIEWS[view])]
     own_figure = ax is None
     figure, ax = axes_or_new(ax, 9.0, 4.6)
@@ -102,18 +112,15 @@ def path_figure(
     across = track.origins[:, 0] @ axes[:2].T
     ax.plot(*across.T, color=style.colour("path"), lw=1.8, zorder=6, label=style.label("path"))
     mark_ends(ax, style)
+    if samples.times is not None and bodies:
+        times = write_times(ax, across, chosen_rows(rows), samples.times)
+        draw_bodies(ax, bodies, chosen_rows(rows), axes[:2], style, times)
     if not solid.all():
-        grey = style.colour("obstacles")
-        ax.plot([], [], "o", color=grey, label=style.label("obstacles"))
-        ax.plot([], [], "o", color=grey, alpha=0.2, label="others")
+        _name_faint(ax, style)
     name_directions(ax, problem, view, _leaves_plane(plan))
     draw_named_zones(ax, problem, axes, style)
     ax.set_title(_path_title(plan))
-    if own_figure:
-        fit_height(figure, ax)
-        figure.legend(frameon=False, loc="outside lower center", ncols=5)
-    else:
-        ax.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=5)
+    _add_legend(figure, ax, own_figure, 4 if bodies else 5)
     return figure
 
 
@@ -125,7 +132,7 @@ def clearance_figure(
     colours: Named = None,
     labels: Named = None,
 ) -> Figure:
-    """Least distance between links and obstacles along the motion.
+    """Least distance between links and obstacles along the motion, over time if it has one.
 
     Args:
         plan: the plan.
@@ -140,20 +147,22 @@ def clearance_figure(
     Raises:
         InvalidInput: a name, colour or axes that are not allowed.
     """
-    from ffsr_plan.collision.distances import ObstacleQuery
-
     style = Style(_OF_CLEARANCE, colours, labels)
     m = plan.edges
     s = np.linspace(0.0, 1.0, m * samples_per_edge + 1)
-    query = ObstacleQuery(plan.problem.robot, plan.problem.obstacles)
+    times, stations = times_of(plan, s), np.arange(m + 1) / m
+    frames = motion_frames(plan.problem.robot, plan.at(s))
+    found = clearances(frames, plan.problem.obstacles, times)
+    nodes_at = times_of(plan, stations)
     figure, ax = axes_or_new(ax, 7.0, 3.2)
     curve, nodes, contact = (style.colour(name) for name in _OF_CLEARANCE)
-    ax.plot(s, query.distances(plan.at(s)), color=curve, lw=1.5, label=style.label("clearance"))
-    stations = np.arange(m + 1) / m
-    ax.plot(stations, plan.clearances, "o", ms=3.5, color=nodes, label=style.label("nodes"))
+    along = s if times is None else times
+    ax.plot(along, found, color=curve, lw=1.5, label=style.label("clearance"))
+    marked = stations if nodes_at is None else nodes_at
+    ax.plot(marked, plan.clearances, "o", ms=3.5, color=nodes, label=style.label("nodes"))
     ax.axhline(0.0, color=contact, lw=1.0, label=style.label("contact"))
-    ax.set_xlim(0.0, 1.0)
-    ax.set_xlabel("path parameter s")
+    ax.set_xlim(0.0, float(along[-1]))
+    ax.set_xlabel("path parameter s" if times is None else "time [s]")
     ax.set_ylabel("clearance [m]")
     ax.legend(frameon=False)
     return figure
@@ -232,6 +241,22 @@ def figure_files(plan: PlanData) -> dict[str, bytes]:
         "convergence.png": convergence_figure(plan),
     }
     return {name: figure_bytes(figure, ".png") for name, figure in figures.items()}
+
+
+def _name_faint(ax: Axes, style: Style) -> None:
+    """Entries in the legend of obstacles that are solid, and of those that are faint."""
+    grey = style.colour("obstacles")
+    ax.plot([], [], "o", color=grey, label=style.label("obstacles"))
+    ax.plot([], [], "o", color=grey, alpha=0.2, label="others")
+
+
+def _add_legend(figure: Figure, ax: Axes, own_figure: bool, columns: int) -> None:
+    """The legend below the axes, and a height that fits if the figure is our own."""
+    if own_figure:
+        fit_height(figure, ax)
+        figure.legend(frameon=False, loc="outside lower center", ncols=columns)
+    else:
+        ax.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=columns)
 
 
 def _path_title(plan: PlanData) -> str:

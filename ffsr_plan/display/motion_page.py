@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_tracks, key_rows
 from ffsr_plan.display.scenes.meshcat_objects import CommandLog, MeshcatNode
 from ffsr_plan.display.scenes.picture_data import (
     MotionFrames,
@@ -19,15 +20,17 @@ from ffsr_plan.display.scenes.projection import view_axes
 from ffsr_plan.display.scenes.scene_objects import (
     TIPS,
     TRACK,
+    add_bodies,
     add_ends,
     add_obstacles,
     add_track,
     add_trails,
     add_zones,
     set_up,
-    shown_box,
 )
 from ffsr_plan.display.scenes.shape_outlines import labels
+from ffsr_plan.display.scenes.shown_space import shown_space
+from ffsr_plan.display.scenes.timed_clearances import nearest_passes
 from ffsr_plan.display.scenes.zone_outlines import name_places
 from ffsr_plan.display.web.html_template import html_page
 from ffsr_plan.plans.plan_data import PlanData
@@ -42,6 +45,8 @@ BYTES_PER_POSE = 4000  # of a link in a frame
 _COLOURS = ("#f0b429", "#5fb3ce", "#6cc27a", "#c08bea", "#f2845c", "#9fb6d9", "#e58ab5", "#b5c94c")
 _MOST_NAMES = 30  # obstacles that are named one by one
 _DIGITS = 5  # of values in plots
+_PATIENCE = 60.0  # [s] in which a motion that has a time is played at first
+_NAME_ERROR = 0.02  # [m] by which the name of a moving body may be off
 
 
 class Axis(NamedTuple):
@@ -64,6 +69,16 @@ class Axis(NamedTuple):
     speed: float
 
 
+def time_axis(duration: float) -> Axis:
+    """The axis of a motion that has a time: true time, or if longer than a minute a faster one.
+
+    Args:
+        duration: of the motion [s].
+    """
+    speed = next((s for s in SPEEDS if s >= 1 and duration <= s * _PATIENCE), SPEEDS[-1])
+    return Axis("t", "s", "time [s]", duration, duration, speed)
+
+
 class PlayedMotion(NamedTuple):
     """What a page plays.
 
@@ -78,6 +93,7 @@ class PlayedMotion(NamedTuple):
         plan: whose trails are drawn; None for none.
         playing: whether the motion starts by itself.
         shapes: of the robot, see `visible_shapes`.
+        times: (N,) of the frames [s], needed where bodies move.
     """
 
     problem: Problem
@@ -90,24 +106,31 @@ class PlayedMotion(NamedTuple):
     plan: PlanData | None = None
     playing: bool = False
     shapes: str = "visual"
+    times: Array | None = None
 
 
 def motion_page(played: PlayedMotion) -> str:
-    """HTML text of a page that shows a motion in three dimensions and needs no network."""
+    """HTML text of a page that shows a motion in three dimensions and needs no network.
+
+    Raises:
+        InvalidInput: bodies move, and the frames have no times that their motions know.
+    """
     import meshcat
 
     log = CommandLog()
     viewer = meshcat.Visualizer(window=log)
     problem, frames, plan = played.problem, played.frames, played.plan
     centers, radii = frames.bounding_spheres()
-    view = set_up(viewer, problem, centers, radii)
+    tracks = body_tracks(problem.scene, played.times)
+    view = set_up(viewer, problem, centers, radii, tracks)
     solid = drawn_solid(problem.scene, centers)
     add_obstacles(viewer["obstacles"], problem.scene, solid)
+    add_bodies(viewer["bodies"], tracks, view_axes(problem)[2])
     add_zones(viewer["zones"], problem.scene, centers, radii)
     start, goal = frames.configurations[[0, -1]]
     add_ends(viewer, problem.robot, start, goal, played.shapes)
     _add_tracks(viewer, problem, frames, plan)
-    _animate(viewer, frames, played.axis.seconds)
+    _animate(viewer, frames, tracks, played.axis.seconds)
     ants = plan is not None and isinstance(plan.trails, Trails) and len(plan.trails.layer) > 0
     data = {
         "title": played.title,
@@ -117,7 +140,12 @@ def motion_page(played: PlayedMotion) -> str:
         "charts": [_chart(chart, played.bound) for chart in played.charts],
         "base": np.round(frames.configurations[:, :7], _DIGITS).tolist(),
         "body": _body(problem, frames, centers, radii),
-        "names": obstacle_names(problem.scene) + _zone_names(problem.scene, centers, radii),
+        "names": [
+            *obstacle_names(problem.scene),
+            *_zone_names(problem.scene, centers, radii),
+            *_body_names(tracks),
+        ],
+        "bodies": nearest_passes(frames, problem.obstacles, tracks),
         "view": view,
         "ants": ants,
         "playing": played.playing,
@@ -187,8 +215,19 @@ def obstacle_names(scene: Scene) -> list[dict[str, Any]]:
 
 def _zone_names(scene: Scene, centers: Array, radii: Array) -> list[dict[str, Any]]:
     """Names of zones, at a corner of each; the rest as of `add_zones`."""
-    places = name_places(scene.keep_in, *shown_box(scene, centers, radii))
+    places = name_places(scene.keep_in, *shown_space(scene, centers, radii))
     return [_name(name, at) for name, at in places[:_MOST_NAMES]]
+
+
+def _body_names(tracks: Sequence[BodyTrack]) -> list[dict[str, Any]]:
+    """Names of moving bodies with their ways: rows of share of the motion and place [m]."""
+    names = []
+    for track in tracks[:_MOST_NAMES]:
+        middles = track.middles()
+        rows = key_rows(middles, _NAME_ERROR)
+        way = np.column_stack([rows / (len(middles) - 1), middles[rows]])
+        names.append(_name(track.name, middles[0]) | {"way": way.round(4).tolist()})
+    return names
 
 
 def _name(text: str, at: Array) -> dict[str, Any]:
@@ -209,21 +248,38 @@ def _add_tracks(
         add_track(viewer["tracks"][name], points, 0.014, TIPS, up)
 
 
-def _animate(viewer: MeshcatNode, frames: MotionFrames, seconds: float) -> None:
-    """Key frames of all links for meshcat's player."""
-    from meshcat.animation import Animation, AnimationClip, AnimationTrack
+def _animate(
+    viewer: MeshcatNode, frames: MotionFrames, tracks: Sequence[BodyTrack], seconds: float
+) -> None:
+    """Key frames of all links and moving bodies for meshcat's player."""
+    from meshcat.animation import Animation, AnimationClip
     from scipy.spatial.transform import Rotation
 
     count, links = frames.origins.shape[:2]
-    times = list(range(count))
-    clips = {}
+    fps, clips, every = (count - 1) / seconds, {}, np.arange(count)
     for link in range(links):
-        positions = frames.origins[:, link].tolist()
-        attitudes = Rotation.from_matrix(frames.rotations[:, link]).as_quat().tolist()
-        tracks = {
-            "position": AnimationTrack("position", "vector3", times, positions),
-            "quaternion": AnimationTrack("quaternion", "quaternion", times, attitudes),
-        }
+        positions = frames.origins[:, link]
+        attitudes = Rotation.from_matrix(frames.rotations[:, link]).as_quat()
+        keys = _key_frames(positions, every, attitudes, every)
         path = viewer["robot"][f"joint_{link + 1}"].path
-        clips[path] = AnimationClip(tracks, fps=(count - 1) / seconds)
+        clips[path] = AnimationClip(keys, fps=fps)
+    for k, track in enumerate(tracks):
+        places, turns = track.positions, track.attitudes
+        keys = _key_frames(places, key_rows(places), turns, key_rows(turns))
+        clips[viewer["bodies"][str(k)].path] = AnimationClip(keys, fps=fps)
     viewer.set_animation(Animation(clips), play=False)
+
+
+def _key_frames(
+    positions: Array, of_positions: IntArray, attitudes: Array, of_attitudes: IntArray
+) -> dict[str, Any]:
+    """Tracks of meshcat's player: positions (N, 3) and attitudes (N, 4) in some frames each."""
+    from meshcat.animation import AnimationTrack
+
+    return {
+        name: AnimationTrack(name, kind, rows.tolist(), values[rows].tolist())
+        for name, kind, rows, values in (
+            ("position", "vector3", of_positions, positions),
+            ("quaternion", "quaternion", of_attitudes, attitudes),
+        )
+    }

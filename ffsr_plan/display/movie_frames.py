@@ -10,12 +10,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ffsr_plan.display.movie_obstacles import DASHES, OBSTACLE, RINGS, draw_shaded
+from ffsr_plan.display.movie_obstacles import (
+    DASHES,
+    MOVING,
+    OBSTACLE,
+    RINGS,
+    draw_shaded,
+    ring_of,
+    shaded_shape,
+)
 from ffsr_plan.display.path_drawing import draw_zones
+from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_tracks, points_near
 from ffsr_plan.display.scenes.picture_data import MotionFrames, drawn_solid
 from ffsr_plan.display.scenes.projection import Outline, outlines, visible_shapes
 from ffsr_plan.display.scenes.scene_objects import TIPS, TRACK, glow
 from ffsr_plan.display.scenes.shape_outlines import points_of_extent
+from ffsr_plan.scene.shapes.obstacle_shapes import placed_axes
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -79,6 +89,7 @@ class MovingScene(NamedTuple):
         words: above the curves, in each frame.
         trails: ends (k, 2, 3) [m] and strengths (k,) of trails.
         ring: radius [m] of the rings around the obstacles beyond theirs; None for no rings.
+        times: (N,) of the frames [s], needed where bodies move.
     """
 
     problem: Problem
@@ -90,6 +101,7 @@ class MovingScene(NamedTuple):
     words: Sequence[Sequence[Words]]
     trails: tuple[Array, Array] | None = None
     ring: float | None = None
+    times: Array | None = None
 
 
 def robot_outlines(frames: MotionFrames, axes: Array, shapes: str) -> list[list[Outline]]:
@@ -111,18 +123,23 @@ def fixed_colours(problem: Problem, shapes: str) -> Array:
     """(n, 3) colours that a palette has to hold, in [0, 1]."""
     from matplotlib.colors import to_rgb
 
-    named = (_BACKGROUND, TEXT, STRONG, CLEARANCE, CONTACT, _START, _GOAL, ATTITUDE)
+    named = (_BACKGROUND, TEXT, STRONG, CLEARANCE, CONTACT, _START, _GOAL, ATTITUDE, MOVING)
     colours = [to_rgb(colour) for colour in named] + [TRACK, TIPS]
     colours += [tuple(shape.meshColor[:3]) for shape in visible_shapes(problem.robot, shapes)]
     return np.array(colours)
 
 
 def pictures(scene: MovingScene, width: int) -> list[Image.Image]:
-    """All frames of a width [px]."""
+    """All frames of a width [px], bodies being where they are at the time of each.
+
+    Raises:
+        InvalidInput: bodies move, and the frames have no times that their motions know.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image
 
-    figure, main, close_up, curves = _figure(scene, width)
+    bodies = body_tracks(scene.problem.scene, scene.times)
+    figure, main, close_up, curves = _figure(scene, bodies, width)
     canvas: Any = FigureCanvasAgg(figure)  # its methods have no types
     _draw_surroundings(main, scene)
     for axes, curve in zip(curves, scene.curves, strict=True):
@@ -133,6 +150,7 @@ def pictures(scene: MovingScene, width: int) -> list[Image.Image]:
     for row in range(len(scene.robot)):
         canvas.restore_region(background)
         artists = [
+            *_body_artists(main, scene, bodies, row),
             *_track_artists(main, scene, row),
             _robot_artist(main, scene, row),
             *_close_up_artists(close_up, scene, row),
@@ -145,11 +163,13 @@ def pictures(scene: MovingScene, width: int) -> list[Image.Image]:
     return drawn
 
 
-def _figure(scene: MovingScene, width: int) -> tuple[Figure, Axes, Axes, list[Axes]]:
+def _figure(
+    scene: MovingScene, bodies: list[BodyTrack], width: int
+) -> tuple[Figure, Axes, Axes, list[Axes]]:
     """A figure with axes for the scene, the close-up and the curves."""
     from matplotlib.figure import Figure
 
-    low, high = _extent(scene)
+    low, high = _extent(scene, bodies)
     size = high - low
     aspect = float(np.clip(size[1] / size[0], *ASPECTS))
     height = round(width * aspect)
@@ -184,7 +204,7 @@ def _curve_axes(
     return [figure.add_axes((left, bottom + k * part, width, full)) for k in below]
 
 
-def _extent(scene: MovingScene) -> tuple[Array, Array]:
+def _extent(scene: MovingScene, bodies: list[BodyTrack]) -> tuple[Array, Array]:
     """Lower left and upper right corner (2,) of what is shown [m]."""
     obstacles, view = scene.problem.scene, scene.axes[:2]
     solid = drawn_solid(obstacles, scene.frames.bounding_spheres()[0])[: len(obstacles.radii)]
@@ -193,6 +213,7 @@ def _extent(scene: MovingScene) -> tuple[Array, Array]:
         points.append(obstacles.centers[solid] @ view.T + sign * obstacles.radii[solid, None])
     points.append(points_of_extent(obstacles) @ view.T)
     cloud = np.vstack(points)
+    cloud = np.vstack([cloud, points_near(bodies, cloud, view)])
     return cloud.min(axis=0) - _MARGIN, cloud.max(axis=0) + _MARGIN
 
 
@@ -239,6 +260,20 @@ def _draw_surroundings(axes: Axes, scene: MovingScene) -> None:
     for row, colour in ((0, _START), (-1, _GOAL)):
         polygons = [outline.polygon for outline in scene.robot[row]]
         axes.add_collection(PolyCollection(polygons, facecolor=colour, alpha=0.3, zorder=3))
+
+
+def _body_artists(
+    axes: Axes, scene: MovingScene, bodies: list[BodyTrack], row: int
+) -> list[Artist]:
+    """Moving bodies where they are in a frame, those in front last, with their rings."""
+    origins = scene.frames.origins[:, 0]
+    ring = ring_of(scene.problem.scene, scene.axes, origins, scene.ring)
+    shapes = [shape for track in bodies for shape in track.shapes(row)]
+    shapes.sort(key=lambda shape: float(scene.axes[2] @ placed_axes(shape)[1]))
+    drawn: list[Artist] = []
+    for shape in shapes:
+        drawn += shaded_shape(axes, shape, scene.axes, ring, MOVING)
+    return drawn
 
 
 def _track_artists(axes: Axes, scene: MovingScene, row: int) -> list[Artist]:

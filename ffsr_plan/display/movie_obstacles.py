@@ -8,23 +8,24 @@ import numpy as np
 
 from ffsr_plan.display.scenes.projection import convex_outline
 from ffsr_plan.display.scenes.shape_outlines import outline_of, section, shaded_sides
-from ffsr_plan.scene.obstacle_shapes import placed_axes
+from ffsr_plan.scene.shapes.obstacle_shapes import placed_axes
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
     from ffsr_plan.core.arrays import Array, Flags
-    from ffsr_plan.scene.obstacle_shapes import ObstacleShape
     from ffsr_plan.scene.scene import Scene
+    from ffsr_plan.scene.shapes.obstacle_shapes import ObstacleShape
 
-RINGS, OBSTACLE, DASHES = "#5fb3ce", "#aeb4bf", (0, (4, 3))
+RINGS, OBSTACLE, MOVING, DASHES = "#5fb3ce", "#aeb4bf", "#e07bb0", (0, (4, 3))
 _LIGHT = np.array([-0.45, 0.55, 0.7]) / np.linalg.norm([-0.45, 0.55, 0.7])  # along the view axes
 _SHADE = 0.16  # brightness of what faces away from the light
 _EDGE = "#41464f"
 _FLAT = 1e-6  # [m] by which obstacles and track may leave the plane of motion
 
 
-class _Ring(NamedTuple):
+class Ring(NamedTuple):
     """Where rings are drawn.
 
     Attributes:
@@ -52,9 +53,7 @@ def draw_shaded(
     """
     local, count = scene.centers @ view.T, len(scene.radii)
     ball = _shaded_ball()
-    heights = np.append(local[:, 2], origins @ view[2])
-    in_plane = np.ptp(heights) < _FLAT
-    around = _Ring(ring, float(heights[-1])) if ring is not None and in_plane else None
+    around = ring_of(scene, view, origins, ring)
     middles = [view[2] @ placed_axes(shape)[1] for shape in scene.shapes]
     for k in np.argsort([*local[:, 2], *middles], kind="stable"):
         if k < count:
@@ -64,8 +63,15 @@ def draw_shaded(
             _draw_shape(axes, scene.shapes[k - count], view, bool(solid[k]), around)
 
 
+def ring_of(scene: Scene, view: Array, origins: Array, ring: float | None) -> Ring | None:
+    """Where rings are drawn, if they are; arguments as of `draw_shaded`."""
+    heights = np.append(scene.centers @ view[2], origins @ view[2])
+    in_plane = np.ptp(heights) < _FLAT
+    return Ring(ring, float(heights[-1])) if ring is not None and in_plane else None
+
+
 def _draw_ball(
-    axes: Axes, ball: Array, center: Array, radius: float, solid: bool, ring: _Ring | None
+    axes: Axes, ball: Array, center: Array, radius: float, solid: bool, ring: Ring | None
 ) -> None:
     """A sphere from a picture of one, or a faint disc; with a ring."""
     from matplotlib.patches import Circle
@@ -83,24 +89,45 @@ def _draw_ball(
 
 
 def _draw_shape(
-    axes: Axes, shape: ObstacleShape, view: Array, solid: bool, ring: _Ring | None
+    axes: Axes, shape: ObstacleShape, view: Array, solid: bool, ring: Ring | None
 ) -> None:
-    """The sides of a shape that face the viewer; with a ring around its cut by the plane."""
-    from matplotlib.collections import PolyCollection
-    from matplotlib.colors import to_rgb
+    """A shaded shape, or a faint outline of it."""
     from matplotlib.patches import Polygon
 
     if not solid:
         outline = outline_of(shape, view[:2])
         axes.add_patch(Polygon(outline, color=OBSTACLE, alpha=0.08, zorder=1.5, lw=0))
         return
+    shaded_shape(axes, shape, view, ring, OBSTACLE)
+
+
+def shaded_shape(
+    axes: Axes, shape: ObstacleShape, view: Array, ring: Ring | None, colour: str
+) -> list[Artist]:
+    """Draw the sides of a shape that face the viewer; with a ring around its cut by the plane.
+
+    Args:
+        axes: the axes.
+        shape: the shape.
+        view: (3, 3) view axes.
+        ring: where the ring is; None for none.
+        colour: of the sides in full light.
+
+    Returns:
+        What was drawn, in the order in which it was.
+    """
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import to_rgb
+    from matplotlib.patches import Polygon
+
     triangles, light = shaded_sides(shape, view, _LIGHT)
-    colours = (_SHADE + (1.0 - _SHADE) * light)[:, None] * to_rgb(OBSTACLE)
+    colours = (_SHADE + (1.0 - _SHADE) * light)[:, None] * to_rgb(colour)
     sides = PolyCollection(list(triangles), facecolors=colours, linewidths=0.0, zorder=2)
     sides.set_antialiased(False)  # smooth edges of two neighbours would leave a seam between them
     axes.add_collection(sides, autolim=False)
     edge = Polygon(outline_of(shape, view[:2]), fill=False, color=_EDGE, lw=0.8, zorder=2)
     axes.add_patch(edge)
+    drawn: list[Artist] = [sides, edge]
     cut = np.zeros((0, 2)) if ring is None else section(shape, view, ring.height)
     if ring is not None and len(cut):
         turn = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
@@ -109,6 +136,8 @@ def _draw_shape(
         around = Polygon(corners, fill=False, color=RINGS, zorder=2)
         around.set(alpha=0.55, linewidth=0.9, linestyle=DASHES)
         axes.add_patch(around)
+        drawn.append(around)
+    return drawn
 
 
 def _shaded_ball(pixels: int = 96) -> Array:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.checks import one_of, whole_number
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.cost_estimate import check_memory
@@ -26,14 +25,17 @@ from ffsr_plan.display.movie_frames import (
     pictures,
     robot_outlines,
 )
-from ffsr_plan.display.scenes.picture_data import motion_frames, trail_segments
+from ffsr_plan.display.scenes.picture_data import trail_segments
+from ffsr_plan.display.scenes.plan_samples import PlanSamples, sample_plan
 from ffsr_plan.display.scenes.projection import SHAPES, VIEWS, view_axes
+from ffsr_plan.display.scenes.timed_clearances import clearances
 
 if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array
     from ffsr_plan.plans.plan_data import PlanData
 
 _FRAME_TIME = 80  # duration of a frame [ms]
+_CLOCK = 0.13  # widths of the curve that the time takes
 
 
 def write_gif(
@@ -50,12 +52,14 @@ def write_gif(
     It shows the robot, its obstacles, the ants' trails and the tracks of base and arm tips. A panel
     below holds a close-up with the rotation of the base, and the clearance. If all obstacles lie in
     the plane of the motion, a ring around each of them marks the proven clearance: no point of the
-    robot ever enters it. Of shapes it is around where that plane cuts them.
+    robot ever enters it. Of shapes it is around where that plane cuts them. Where the problem has a
+    duration, bodies move with the robot, and the time is written.
 
     Args:
         plan: the plan.
         path: file to write, `.gif`; an existing one is replaced.
-        frames: number of pictures, at equal steps of the path parameter.
+        frames: number of pictures, at equal steps of the path parameter, or of time where the
+            problem has a duration.
         width: of the picture [px].
         view: `path`, seen along the normal y' of the path frame, or `side`, along the lateral x'.
         shapes: of the robot, `visual` or `collision`; of meshes their convex outlines are drawn.
@@ -77,9 +81,8 @@ def write_gif(
 def _scene(plan: PlanData, count: int, axes: Array, shapes: str) -> MovingScene:
     """Everything that `count` frames show, seen along the view axes (3, 3)."""
     problem, least = plan.problem, plan.certificate.least_clearance
-    frames = motion_frames(problem.robot, plan.at(np.linspace(0.0, 1.0, count)))
-    query = ObstacleQuery(problem.robot, problem.obstacles)
-    clearances = query.distances_at(frames.placements, np.arange(count), np.zeros((count, 3)))
+    samples = sample_plan(plan, count)
+    frames, found = samples.frames, clearances(samples.frames, problem.obstacles, samples.times)
     levels = [(0.0, style.CONTACT), (least, style.CLEARANCE)]
     return MovingScene(
         problem=problem,
@@ -87,23 +90,29 @@ def _scene(plan: PlanData, count: int, axes: Array, shapes: str) -> MovingScene:
         frames=frames,
         axes=axes,
         robot=robot_outlines(frames, axes, shapes),
-        curves=[PanelCurve(clearances, levels, style.CLEARANCE)],
-        words=_words(plan, frames.configurations[:, 3:7], clearances),
+        curves=[PanelCurve(found, levels, style.CLEARANCE)],
+        words=_words(plan, samples, found),
         trails=trail_segments(plan),
         ring=least if np.isfinite(least) else None,
+        times=samples.times,
     )
 
 
-def _words(plan: PlanData, attitudes: Array, clearances: Array) -> list[list[Words]]:
-    """Rotation of the base and clearance in each frame."""
-    by_arms = " by the arms" if plan.problem.mode.attitude_reacts else ""
+def _words(plan: PlanData, samples: PlanSamples, found: Array) -> list[list[Words]]:
+    """Rotation of the base and clearance in each frame; the time, if it has one."""
+    attitudes, times = samples.frames.configurations[:, 3:7], samples.times
+    by_arms = " by the arms" if plan.problem.mode.attitude_reacts and times is None else ""
     least = proven(plan.certificate.least_clearance)
+    after = 0.0 if times is None else _CLOCK
     words = []
-    for attitude, clearance in zip(attitudes, clearances, strict=True):
+    for k, (attitude, clearance) in enumerate(zip(attitudes, found, strict=True)):
         rotation = float(np.degrees(angle_between(attitudes[0], attitude)))
-        row = [Words(0.0, f"base rotated {rotation:.1f}°{by_arms}", style.ATTITUDE)]
+        row = [Words(after, f"base rotated {rotation:.1f}°{by_arms}", style.ATTITUDE)]
         if np.isfinite(clearance):
             row.append(Words(0.46, f"clearance {clearance:.2f} m", style.STRONG))
             row.append(Words(0.74, f"proven ≥ {least}", style.CLEARANCE))
+        if times is not None:
+            digits = 1 if times[-1] < 100.0 else 0
+            row.append(Words(0.0, f"{times[k]:.{digits}f} s", style.STRONG))
         words.append(row)
     return words

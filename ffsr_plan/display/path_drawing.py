@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from ffsr_plan.core.arrays import Array, Flags
     from ffsr_plan.problem.problem import Problem
-    from ffsr_plan.scene.keep_in_zones import Zone
     from ffsr_plan.scene.scene import Scene
+    from ffsr_plan.scene.shapes.keep_in_zones import Zone
 
 NUMBERED = 30  # scenes of at most so many obstacles have their numbers written in
 _EDGE, _DASHES = "#5c6168", (0, (5, 3))

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.cost_estimate import check_memory
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.display.motion_page import (
@@ -17,15 +17,18 @@ from ffsr_plan.display.motion_page import (
     Axis,
     PlayedMotion,
     motion_page,
+    time_axis,
 )
-from ffsr_plan.display.scenes.picture_data import Curve, MotionFrames, Quantity, motion_frames
+from ffsr_plan.display.scenes.picture_data import Curve, Quantity
+from ffsr_plan.display.scenes.plan_samples import PlanSamples, sample_plan
 from ffsr_plan.display.scenes.projection import SHAPES
+from ffsr_plan.display.scenes.timed_clearances import clearances
 
 if TYPE_CHECKING:
     from ffsr_plan.core.arrays import Array, IntArray
     from ffsr_plan.plans.plan_data import PlanData
 
-_AXIS = Axis("s", "", "path parameter s", 1.0, 12.0, 1)  # a plan has no time law of its own
+_AXIS = Axis("s", "", "path parameter s", 1.0, 12.0, 1)  # without a duration, no time law
 _FRAMES_PER_EDGE = 8
 _MOST_FRAMES = 4000
 _LEAST_TURN = 1e-9  # [rad or m] below which a joint does not move
@@ -36,7 +39,8 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False, shapes: str 
 
     The page plots clearance, rotation of the base and joints along the motion, plays on a click or
     the space bar, and steps with the arrow keys. `#s=0.5` at the end of its address opens it at
-    that path parameter.
+    that path parameter. Where the problem has a duration the page plays in true time instead, with
+    all bodies where they are at each time, and `#t=30` opens it at that time [s].
 
     Args:
         plan: the plan.
@@ -46,24 +50,28 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False, shapes: str 
 
     Returns:
         The text. Equal plans give equal text.
+
+    Raises:
+        InvalidInput: an argument that is not allowed, or a body that turns too often.
     """
     problem = plan.problem
-    samples = plan.edges * frames_per_edge(plan) + 1
-    size = {"frames": samples, "joints": problem.robot.nd + 1}
+    count = _frame_count(plan)
+    moving = len(problem.scene.bodies)
+    size = {"frames": count, "joints and bodies": problem.robot.nd + 1 + moving}
     check_memory("page", size, BYTES_PER_POSE, "a plan with fewer divisions")
-    parameters = np.linspace(0.0, 1.0, samples)
-    frames = motion_frames(problem.robot, plan.at(parameters))
+    samples = sample_plan(plan, count)
     played = PlayedMotion(
         problem=problem,
-        frames=frames,
-        axis=_AXIS,
-        charts=_charts(plan, frames),
+        frames=samples.frames,
+        axis=_AXIS if problem.duration is None else time_axis(problem.duration),
+        charts=_charts(plan, samples),
         bound="proven at least",
         title=title or f"{problem.robot.name}, {problem.mode}",
         subtitle=_summary(plan),
         plan=plan,
         playing=playing,
         shapes=one_of("shapes", shapes, SHAPES),
+        times=samples.times,
     )
     return motion_page(played)
 
@@ -75,13 +83,27 @@ def frames_per_edge(plan: PlanData) -> int:
     return min(max(_FRAMES_PER_EDGE, int(np.ceil(farthest / LARGEST_TURN))), most)
 
 
-def _charts(plan: PlanData, frames: MotionFrames) -> list[Quantity]:
+def _frame_count(plan: PlanData) -> int:
+    """Frames at equal steps, so many that no joint and no body turns far between two of them."""
+    steps, problem = plan.edges * frames_per_edge(plan), plan.problem
+    if problem.duration is None:
+        return steps + 1
+    steps = int(np.ceil(steps / (1.0 - problem.ramp)))  # of the edges that are passed fastest
+    for body in problem.scene.bodies:
+        turn = body.motion.turned(0.0, problem.duration)
+        if turn > _MOST_FRAMES * LARGEST_TURN:
+            allowed = f"at most {_MOST_FRAMES * LARGEST_TURN:g} rad, which a page can show"
+            raise InvalidInput(f"turn of the body '{body.name}'", turn, allowed)
+        steps = max(steps, int(np.ceil(turn / LARGEST_TURN)))
+    return steps + 1
+
+
+def _charts(plan: PlanData, samples: PlanSamples) -> list[Quantity]:
     """Clearance, rotation of the base and joints along the motion."""
-    count, robot, scene = len(frames.configurations), plan.problem.robot, plan.problem.scene
+    frames, robot, scene = samples.frames, plan.problem.robot, plan.problem.obstacles
     charts = []
     if len(scene):
-        query = ObstacleQuery(robot, scene)
-        found = query.distances_at(frames.placements, np.arange(count), np.zeros((count, 3)))
+        found = clearances(frames, scene, samples.times)
         curve = Curve("clearance", "clearance", found)
         least = max(plan.certificate.least_clearance, 0.0)
         charts.append(Quantity("clearance", "clearance", "m", [curve], [least]))
@@ -89,7 +111,7 @@ def _charts(plan: PlanData, frames: MotionFrames) -> list[Quantity]:
     rotation = np.degrees(angle_between(attitudes[0], attitudes))
     curve = Curve("rotation", "angle from the start", rotation)
     charts.append(Quantity("attitude", "rotation of the base", "°", [curve], []))
-    joints = plan.motion.joints_at(*_edges_and_times(plan, count))
+    joints = plan.motion.joints_at(*_edges_and_times(plan, samples.parameters))
     prismatic = np.asarray(robot.prismatic, dtype=bool)
     for kind, name, title, unit in (
         (~prismatic, "joints", "joints", "rad"),
@@ -103,9 +125,9 @@ def _charts(plan: PlanData, frames: MotionFrames) -> list[Quantity]:
     return charts
 
 
-def _edges_and_times(plan: PlanData, count: int) -> tuple[IntArray, Array]:
-    """Edges (N,) and times on them (N,) at equal steps of the path parameter."""
-    scaled = np.linspace(0.0, 1.0, count) * plan.motion.edges
+def _edges_and_times(plan: PlanData, parameters: Array) -> tuple[IntArray, Array]:
+    """Edges (N,) and places on them (N,) at path parameters (N,)."""
+    scaled = parameters * plan.motion.edges
     edge = np.minimum(scaled.astype(np.int64), plan.motion.edges - 1)
     return edge, scaled - edge
 

@@ -12,7 +12,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.display.body_drawing import (
+    MOST_LABELLED,
+    chosen_rows,
+    legend_text,
+    shades,
+    timed_labels,
+)
 from ffsr_plan.display.path_drawing import NUMBERED, mark_ends
+from ffsr_plan.display.scenes.body_tracks import BodyTrack, points_near
 from ffsr_plan.display.scenes.projection import hull_points, view_axes
 from ffsr_plan.display.scenes.shape_outlines import (
     labels,
@@ -31,8 +39,8 @@ if TYPE_CHECKING:
     from ffsr_plan.display.figure_style import Style
     from ffsr_plan.display.scenes.picture_data import MotionFrames
     from ffsr_plan.problem.problem import Problem
-    from ffsr_plan.scene.keep_in_zones import Zone
-    from ffsr_plan.scene.obstacle_shapes import ObstacleShape
+    from ffsr_plan.scene.shapes.keep_in_zones import Zone
+    from ffsr_plan.scene.shapes.obstacle_shapes import ObstacleShape
 
 _TURN, _ELEVATION = 68.0, 28.0  # of the viewer from the direction of the path, from the plane [deg]
 _LIGHT = np.array([-0.45, -0.55, 0.70]) / np.linalg.norm([-0.45, -0.55, 0.70])  # towards it
@@ -62,6 +70,14 @@ class _Faces(NamedTuple):
         self.polygons.extend(polygons)
         self.colours.extend(np.hstack([light * to_rgb(colour), np.full_like(light, alpha)]))
 
+    def add_bodies(self, tracks: Sequence[BodyTrack], rows: Sequence[int], colour: str) -> None:
+        """Add bodies that move as they are in some frames, from light to dark."""
+        from matplotlib.colors import to_hex
+
+        for row, shade in zip(rows, shades(colour, len(rows)), strict=True):
+            for shape in (shape for track in tracks for shape in track.shapes(row)):
+                self.add(_shape(shape), to_hex(shade), 0.8)
+
     def add_bright(self, polygons: Array, colour: str) -> None:
         """Add faces (n, k, 3) of one colour that light does not change."""
         from matplotlib.colors import to_rgba
@@ -78,6 +94,7 @@ def spatial_figure(
     style: Style,
     ax: Axes | None = None,
     title: str = "",
+    bodies: Sequence[BodyTrack] = (),
 ) -> Figure:
     """Obstacles, the robot at several times and the track of its base in perspective.
 
@@ -86,17 +103,17 @@ def spatial_figure(
         frames: poses of the robot's links along the motion.
         rows: of the poses at which the robot is drawn.
         solid: (N + S,) spheres and shapes that are drawn; others would hide the robot.
-        style: has `path`, `start`, `goal`, `robot`, `obstacles` and `zones`.
+        style: has `path`, `start`, `goal`, `robot`, `obstacles`, `bodies` and `zones`.
         ax: axes to draw on, with `projection="3d"`; by default those of a new figure.
         title: of the figure.
+        bodies: those that move, drawn at up to five of the times of the rows.
 
     Raises:
         InvalidInput: axes that are not in 3-D.
     """
     figure, ax3 = _axes_in_space(ax)
     faces, scene = _Faces([], []), problem.scene
-    ball, count = _ball(10), len(scene.radii)
-    near = solid[:count]
+    ball, count, near = _ball(10), len(scene.radii), solid[: len(scene.radii)]
     for center, radius in zip(scene.centers[near], scene.radii[near], strict=True):
         faces.add(center + radius * ball, style.colour("obstacles"), 1.0)
     for each in np.flatnonzero(solid[count:]):
@@ -106,6 +123,8 @@ def spatial_figure(
         name = "robot" if not at_end else "start" if row == rows[0] else "goal"
         faces.add(_robot(frames, row), style.colour(name), 0.9 if at_end else 0.35)
     cloud = np.vstack([*faces.polygons, frames.origins[:, 0], points_of_extent(scene)])
+    cloud = np.vstack([cloud, points_near(bodies, cloud, np.eye(3))])
+    faces.add_bodies(bodies, chosen_rows(rows), style.colour("bodies"))
     low, high = cloud.min(axis=0), cloud.max(axis=0)
     track = frames.origins[:, 0]
     faces.add_bright(_tube(track, _TRACK_WIDTH * float(np.max(high - low))), style.colour("path"))
@@ -119,12 +138,38 @@ def spatial_figure(
         for label in labels(scene):
             x, y, z = *label.at[:2], label.top + 0.02 * float(np.max(high - low))
             ax3.text(x, y, z, label.text, ha="center", fontsize=8)
+    if bodies:
+        _write_times(ax3, bodies, frames, chosen_rows(rows), (low, high), style)
     _set_view(ax3, problem, low, high)
     _draw_zones(ax3, scene.keep_in, low, high, style)
-    columns = 4 if scene.keep_in else 3
+    columns = 4 if scene.keep_in or bodies else 3
     ax3.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0.02), ncols=columns)
     ax3.set_title(title)
     return figure
+
+
+def _write_times(
+    ax: Any,  # noqa: ANN401 - axes in 3-D have no types
+    bodies: Sequence[BodyTrack],
+    frames: MotionFrames,
+    rows: Sequence[int],
+    limits: tuple[Array, Array],
+    style: Style,
+) -> None:
+    """Times of the robot, and in their colour those of few bodies, and an entry in the legend."""
+    legend = legend_text(style, bodies[0].times[list(rows)])
+    ax.plot([], [], "s", ms=7, color=style.colour("bodies"), label=legend)
+    size = float(np.max(limits[1] - limits[0]))
+    box = {"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.7}
+    times, origins = bodies[0].times, frames.origins[:, 0]
+    written = [(f"{times[row]:.3g} s", origins[row], "black") for row in rows]
+    for track in bodies if len(bodies) <= MOST_LABELLED else ():
+        labelled = timed_labels(track, rows, np.eye(3), size)
+        written += [(*label, style.colour("bodies")) for label in labelled]
+    look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 8, "zorder": 1e7}
+    for text, place, colour in written:
+        if np.all((place >= limits[0]) & (place <= limits[1])):
+            ax.text(*place, text, color=colour, bbox=box, **look)
 
 
 def _draw_zones(

@@ -75,12 +75,18 @@ class LeastFuel:
         lattice = problem.lattice
         if lattice is None:
             allowed = "a problem with a lattice, whose layers are the control points"
+        elif lattice.progress is not None:
+            allowed = "a lattice without progress: a robot that waits has no fixed pace"
         elif lattice.postures:
             allowed = "a lattice without posture axes: all nodes of a layer have the same joints"
         elif problem.mode.floats:
             allowed = "a mode with thrusters, free-flying or attitude-held: no fuel is burnt here"
         elif not lattice.axes:
             allowed = "a base that moves, and a lattice with a lateral or normal axis"
+        elif problem.scene.bodies:
+            allowed = (
+                "a scene at rest: its curves have no pace at which bodies that move are passed"
+            )
         else:
             return
         raise InvalidInput("planner", self.name, allowed)

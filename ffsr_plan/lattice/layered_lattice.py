@@ -105,6 +105,11 @@ class LayeredLattice:
             self.nominal.joint_values[i],
         )
 
+    def indices_along(self, path: IntArray) -> IntArray:
+        """Offset indices along a path (m + 1,): (m + 1,), or (m + 1, axes) with several."""
+        indices = self.indices[path]
+        return frozen(indices if indices.shape[1] > 1 else indices.sum(axis=1))
+
     def motion(self, path: IntArray) -> Motion:
         """The motion through node `path[i]` of each layer i, (m + 1,)."""
         return self.nominal.displaced(self.offsets[path])

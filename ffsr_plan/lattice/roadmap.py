@@ -59,8 +59,9 @@ class Roadmap:
         self.problem, self.deadline = problem, deadline or Deadline()
         self.lattice = LayeredLattice(problem)
         self.prover = Prover(
-            self.lattice.nominal, problem.obstacles, problem.tolerance, self.deadline
-        )
+            self.lattice.nominal, problem.obstacles, problem.tolerance, self.deadline,
+            problem.pace(self.lattice.divisions),
+        )  # fmt: skip
         self.prover.check_ends()
         self.prover.check_self_collision(against_self_collision())
         self.nodes = NodeClearances(self.lattice, self.prover)

@@ -147,7 +147,7 @@ def _unproven(problem: Problem, motion: Motion, refused: list[CurveProof]) -> Ex
     piece, still = int(proof.refused[0]), np.zeros(3)
     pairs = (
         proof.prover.nearest(piece, still, still, 0.5),
-        proof.prover.nearest_links(piece, 0.5),
+        proof.prover.links.nearest(piece, 0.5),
     )
     contact = named(problem.obstacles, min(pairs, key=lambda each: each.distance))
     edge = int(np.ceil((piece + 1.0) / proof.curve.edges * motion.edges))

@@ -15,6 +15,7 @@ from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
+from ffsr_plan.planning.own_pace import refuse_another_pace
 from ffsr_plan.planning.timing import Timing
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
@@ -40,6 +41,7 @@ class Plan(Timing, PlanData):
         from ffsr_plan.planning.flights import smooth_flight, timed_plan
         from ffsr_plan.planning.met_plan import met_plan
 
+        refuse_another_pace("timed", self.problem)
         if meeting is not None:
             return met_plan(self, limits, corners, duration, meeting)
         if one_of("corners", corners, ("smooth", "rest")) == "smooth":
@@ -56,10 +58,12 @@ class Plan(Timing, PlanData):
         of the result tells which.
 
         Raises:
+            InvalidInput: bodies of the scene move: the plan is proven at its own pace alone.
             UnprovenCurve: nothing could be proven, not even the plan's path with rests.
         """
         from ffsr_plan.planning.smooth_plan import smoothed
 
+        refuse_another_pace("smooth", self.problem)
         return smoothed(self)
 
     def least_fuel(self, margin: float = 0.0) -> SmoothPlan:
@@ -75,11 +79,13 @@ class Plan(Timing, PlanData):
                 and goal [m].
 
         Raises:
-            InvalidInput: a mode without thrusters, or a margin that cannot be kept.
+            InvalidInput: a mode without thrusters, a margin that cannot be kept, or bodies of the
+                scene that move.
             UnprovenCurve: see `smooth`.
         """
         from ffsr_plan.planning.smooth_plan import least_fuel
 
+        refuse_another_pace("least_fuel", self.problem)
         return least_fuel(self, margin)
 
     def verify(
@@ -133,8 +139,9 @@ class Plan(Timing, PlanData):
     def to_csv(self, path: str | Path, samples: int | None = None) -> None:
         """Write the path as a table, one configuration a row, reaction included, units on top.
 
-        Columns: path parameter, base origin in the world, its quaternion and ZYX angles, joints. An
-        existing file is replaced. `timed(...).to_csv` writes a trajectory.
+        Columns: the time where the problem has a duration, path parameter, base origin in the
+        world, its quaternion and ZYX angles, joints. An existing file is replaced.
+        `timed(...).to_csv` writes a trajectory.
 
         Args:
             path: of the file.
@@ -146,10 +153,11 @@ class Plan(Timing, PlanData):
         rows = self.edges + 1
         if samples is not None:
             rows = whole_number("samples", samples, at_least=2, at_most=1_000_000)
-        target, columns = checked_path("path", path), 11 + self.problem.robot.nd
+        target, columns = checked_path("path", path), 12 + self.problem.robot.nd
         size = {"samples": rows, "columns": columns}
         check_memory("samples", size, BYTES_PER_CELL, "fewer samples")
-        write_csv(target, path_table(self.motion, np.linspace(0.0, 1.0, rows)))
+        pace = self.problem.pace(self.edges)
+        write_csv(target, path_table(self.motion, np.linspace(0.0, 1.0, rows), pace))
 
     def write_html(self, path: str | Path, title: str = "", *, shapes: str = "visual") -> None:
         """Write one self-contained page that shows the motion; it needs no network.

@@ -135,7 +135,8 @@ def refine(plan: Plan) -> Plan:
     if lattice is None or plan.lattice is None or lattice.postures:
         raise InvalidInput("plan", lattice, "a plan on a lattice without posture axes")
     nominal = plan.lattice.nominal
-    prover = Prover(nominal, plan.problem.obstacles, plan.problem.tolerance)
+    problem, pace = plan.problem, plan.problem.pace(nominal.edges)
+    prover = Prover(nominal, problem.obstacles, problem.tolerance, pace=pace)
     offsets = plan.motion.positions - nominal.positions
     refined, _ = refined_path(plan.lattice, prover, offsets, plan.clearances)
     if refined is None:
@@ -206,7 +207,7 @@ def _certified(
     problem: Problem, planner: Planner, seed: int | None, watch: Stopwatch, solution: Solution
 ) -> Plan:
     """The plan of a solution; `watch` was started when it was asked for."""
-    if problem.lattice is not None and solution.lattice is None:
+    if isinstance(planner, Portfolio) and solution.lattice is None:
         problem = without_lattice(problem)  # the trees of a portfolio found the path
     end = solution.motion.configurations()[-1]
     return Plan(

@@ -63,7 +63,8 @@ class Timing:
             meeting: what a frame arrives with, and when, instead of a rest; see `Meeting`.
 
         Raises:
-            InvalidInput: limits, a duration or a meeting that cannot be, or no motion at all.
+            InvalidInput: limits, a duration or a meeting that cannot be, no motion at all, or
+                bodies of the scene that move.
             UnprovenCurve: see `smooth`.
         """
         limits = read_limits(

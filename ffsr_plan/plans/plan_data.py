@@ -104,7 +104,8 @@ class PlanData:
             return whole_objective(problem, self.motion, self.length)
         if problem.delta == 0.0:
             return motion_objective(problem, self.length, np.full(self.motion.edges, np.inf))
-        prover = Prover(self.motion, problem.obstacles, problem.tolerance)
+        pace = problem.pace(self.motion.edges)
+        prover = Prover(self.motion, problem.obstacles, problem.tolerance, pace=pace)
         verdicts = EdgeClearances(problem, prover).of_path(still, self.clearances)
         least = np.array([verdict.least_clearance for verdict in verdicts])
         return motion_objective(problem, self.length, least)
@@ -114,6 +115,16 @@ class PlanData:
         """m, the number of edges; on a lattice, of its divisions."""
         lattice = self.problem.lattice
         return self.motion.edges if lattice is None else lattice.divisions
+
+    @property
+    def slip(self) -> float:
+        """Time by which the whole flight may be early or late and is still free of bodies [s].
+
+        The robot is then where it was proven free, and no body has come nearer than it can move in
+        that time. Infinite where nothing moves.
+        """
+        fastest = max((body.speed for body in self.problem.scene.bodies), default=0.0)
+        return self.certificate.least_clearance / fastest if fastest > 0.0 else np.inf
 
     @property
     def gap(self) -> float:

@@ -13,12 +13,15 @@ from numpy.typing import NDArray
 
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import read_text, write_text
+from ffsr_plan.plans.body_entries import body_entries
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_reading import PLAIN, plan_of
 from ffsr_plan.plans.plan_tables import FORMAT
 from ffsr_plan.plans.planner_registry import planner_table
 from ffsr_plan.plans.robot_table import robot_table
 from ffsr_plan.plans.shape_entries import shape_entries
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.records import Branches, Trails
 
 _LARGEST_FILE = 500_000_000  # [bytes]; reading takes about ten times as much memory
@@ -40,6 +43,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
                 "excess": problem.scene.excess,
                 "sources": [list(source) for source in problem.scene.sources],
                 **shape_entries(problem.scene),
+                **_bodies(problem.scene),
             },
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),
@@ -47,6 +51,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
             "mode": problem.mode.value,
             **{name: getattr(problem, name) for name in PLAIN},
             **_given("window", problem.window),
+            **_pace(problem),
         },
         "planner": planner_table(plan.planner),
         "seed": plan.seed,
@@ -78,6 +83,16 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
         "seconds": plan.seconds,
         **({} if plan.fuel is None else {"fuel": plan.fuel._asdict()}),
     }
+
+
+def _bodies(scene: Scene) -> dict[str, Any]:
+    return {"bodies": body_entries(scene)} if scene.bodies else {}
+
+
+def _pace(problem: Problem) -> dict[str, Any]:
+    if problem.duration is None:
+        return {}
+    return {"duration": problem.duration, "ramp": problem.ramp}
 
 
 def _given(name: str, values: NDArray[np.float64] | None) -> dict[str, Any]:

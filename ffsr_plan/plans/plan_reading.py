@@ -50,8 +50,9 @@ def plan_of(what: str, data: Mapping[str, Any]) -> PlanData:
     problem = _problem(what, table.problem)
     lattice = None
     if problem.lattice is not None:
-        lattice = _within(what, "problem.lattice", lambda: LayeredLattice(problem))
         _check_nodes(what, table, problem.lattice)
+        if problem.lattice.progress is None:
+            lattice = _within(what, "problem.lattice", lambda: LayeredLattice(problem))
     _within(what, "planner", lambda: table.planner.refuse(problem))
     check_search(what, table, problem)
     least = table.certificate.least_clearance
@@ -106,6 +107,7 @@ def _check_sizes(what: str, table: PlanTable) -> None:
         nodes: tuple[int, ...] = (0,)
     else:
         corners, axes = lattice.divisions + 1, len(lattice.axes) + len(lattice.postures)
+        axes += lattice.progress is not None
         nodes = (corners, axes) if axes > 1 else (corners,)
     rows = {
         "nodes": (table.nodes, nodes),
@@ -136,6 +138,7 @@ def _problem(what: str, table: ProblemTable) -> Problem:
             scene.shapes,
             scene.keep_in,
             scene.growth,
+            [body.body() for body in scene.bodies],
         ),
     )
     return _within(
@@ -149,6 +152,8 @@ def _problem(what: str, table: ProblemTable) -> Problem:
             lattice=table.lattice,
             mode=table.mode,
             window=table.window,
+            duration=table.duration,
+            ramp=table.ramp,
             **{name: getattr(table, name) for name in PLAIN},
         ),
     )
@@ -267,6 +272,8 @@ def _check_nodes(what: str, table: PlanTable, lattice: Lattice) -> None:
     counts = {name: getattr(lattice, name).half_count for name in lattice.axes}
     known = {name: range(-n, n + 1) for name, n in counts.items()}
     known |= {f"postures.{k}": axis.indices for k, axis in enumerate(lattice.postures)}
+    if (given := lattice.progress) is not None:
+        known["progress"] = range(-given.before, given.steps + given.beyond + 1)
     known = known or {"no axis": range(1)}
     nodes = table.nodes.reshape(len(table.nodes), -1)
     for (axis, inside), column in zip(known.items(), nodes.T, strict=True):

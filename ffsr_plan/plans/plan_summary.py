@@ -52,9 +52,17 @@ def _clearance_rows(plan: PlanData) -> list[tuple[str, str]]:
     if not len(plan.problem.scene):
         nodes = motion = "no obstacles"
     rows = [("clearance at nodes", nodes), ("proven along the motion", motion)]
+    if np.isfinite(plan.slip):
+        rows.append(("free of moving bodies", f"even {_rounded_down(plan.slip)} s early or late"))
     if unchecked := plan.problem.robot.unchecked_links:
         rows.append(("not checked, no shape", ", ".join(unchecked)))
     return rows
+
+
+def _rounded_down(value: float) -> str:
+    """Three digits of a number that is promised."""
+    digits = 10.0 ** (2 - np.floor(np.log10(value))) if value > 0.0 else 1.0
+    return f"{np.floor(value * digits) / digits:g}"
 
 
 def _attitude_rows(plan: PlanData, duration: float | None) -> list[tuple[str, str]]:

@@ -17,11 +17,12 @@ from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, OneOf, Rule, Text, Truth, WholeNumber
 from ffsr_plan.core.settings import from_mapping, settings
+from ffsr_plan.plans.body_entries import BodyTable
 from ffsr_plan.plans.planner_registry import PLANNERS, Planner
 from ffsr_plan.plans.shape_entries import ZONE_KINDS, Bodies
 from ffsr_plan.problem.lattice_settings import Lattice
 from ffsr_plan.robots.collision_shapes import CONTAINERS
-from ffsr_plan.scene.obstacle_shapes import SHAPES
+from ffsr_plan.scene.shapes.obstacle_shapes import SHAPES
 
 FORMAT = "ffsr-plan/3"
 _LARGEST = 1e300
@@ -166,6 +167,7 @@ class SceneTable:
     shapes: Annotated[Any, Bodies(SHAPES)] = ()
     keep_in: Annotated[Any, Bodies(ZONE_KINDS)] = ()
     growth: Annotated[float, Number(at_least=0.0)] = 0.0
+    bodies: tuple[BodyTable, ...] = ()
 
 
 @settings
@@ -187,6 +189,8 @@ class ProblemTable:
     reach_attitude: Annotated[Any, AnyValue()]
     window: Annotated[Any, AnyValue()] = None
     min_clearance: Annotated[Any, AnyValue()] = 0.0
+    duration: Annotated[Any, AnyValue()] = None
+    ramp: Annotated[Any, AnyValue()] = 0.0
 
 
 @settings

@@ -12,9 +12,9 @@ from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Rule
 from ffsr_plan.core.settings import UnknownKey, from_mapping
-from ffsr_plan.scene.keep_in_zones import ZONES, Zone
-from ffsr_plan.scene.obstacle_shapes import ObstacleShape
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.keep_in_zones import ZONES, Zone
+from ffsr_plan.scene.shapes.obstacle_shapes import ObstacleShape
 
 ZONE_KINDS: dict[str, type[Any]] = {kind.word: kind for kind in ZONES}  # type: ignore[attr-defined]
 """The classes of zones by their words."""
@@ -28,15 +28,20 @@ def shape_entries(scene: Scene) -> dict[str, Any]:
     """
     entries: dict[str, Any] = {}
     if scene.shapes:
-        entries["shapes"] = [_entry(shape) for shape in scene.shapes]
+        entries["shapes"] = [plain_entry(shape) for shape in scene.shapes]
     if scene.keep_in:
-        entries["keep_in"] = [_entry(zone) for zone in scene.keep_in]
+        entries["keep_in"] = [plain_entry(zone) for zone in scene.keep_in]
     if entries and scene.growth > 0.0:
         entries["growth"] = scene.growth
     return entries
 
 
-def _entry(body: ObstacleShape | Zone) -> dict[str, Any]:
+def plain_entry(body: ObstacleShape | Zone) -> dict[str, Any]:
+    """A shape or zone in plain Python values, with its kind.
+
+    Args:
+        body: the shape or zone.
+    """
     values = {each.name: getattr(body, each.name) for each in fields(body)}  # type: ignore[arg-type]
     plain = {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in values.items()}
     return {"kind": body.word, **plain}

@@ -21,7 +21,9 @@ LATTICE_PLANNERS: dict[str, type[OnLattice]] = {
 
 
 def default_on_lattice(lattice: Lattice) -> OnLattice:
-    """`PostureAnnealing` on a lattice with posture axes, else `MaxMinAntSystem`."""
+    """`PostureAnnealing` with posture axes, `LatticeOptimum` with progress, else ants."""
+    if lattice.progress is not None:
+        return LatticeOptimum()
     return PostureAnnealing() if lattice.postures else MaxMinAntSystem()
 
 

@@ -63,6 +63,8 @@ class Portfolio:
 
     def refuse(self, problem: Problem) -> None:
         """Raise `InvalidInput` if the planner on the lattice cannot solve the problem."""
+        if problem.lattice is not None and problem.lattice.progress is not None:
+            raise InvalidInput("planner", self.name, "lattice-optimum on a lattice with progress")
         self.part(problem).refuse(problem)
 
     def solve(self, problem: Problem, rng: np.random.Generator, request: SearchRequest) -> Solution:

@@ -26,6 +26,8 @@ def against_obstacles(problem: Problem, ends: tuple[float, float]) -> tuple[str,
     if near:
         return tuple(near)
     advice = [*_offsets(problem)]
+    if problem.scene.bodies:
+        advice.append("lattice.progress, with which the robot can wait; another duration or ramp")
     if problem.given_lattice.axes:
         advice.append(f"more than {problem.given_lattice.divisions} divisions")
     if problem.robot.nd:
@@ -58,6 +60,29 @@ def for_proof(problem: Problem, cut_short: bool, links: bool) -> tuple[str, ...]
     for k, axis in enumerate(problem.given_lattice.postures):
         advice.append(f"lattice.postures.{k}, {_of_posture_axis(axis)}")
     return (*advice, f"more than {problem.given_lattice.divisions} divisions")
+
+
+def against_closed_times(problem: Problem) -> tuple[str, ...]:
+    """What may help where a lattice with progress holds no path.
+
+    Args:
+        problem: gives the lattice.
+    """
+    lattice = problem.given_lattice
+    progress = lattice.progress
+    assert progress is not None
+    needed = -(-progress.steps // progress.most)
+    if lattice.divisions < needed:
+        return (
+            f"at least {needed} divisions: the goal is {progress.steps} steps of progress away",
+        )
+    advice = [
+        f"lattice.progress, with before {progress.before} and beyond {progress.beyond}: more, so "
+        "that the robot can give way behind the start and beyond the goal",
+        f"more than {lattice.divisions} divisions",
+    ]
+    advice += ["a longer duration"] if problem.duration is not None else []
+    return (*_offsets(problem), *advice)
 
 
 def _offsets(problem: Problem) -> Iterator[str]:

@@ -10,6 +10,7 @@ import math
 
 from ffsr_plan.core.cost_estimate import MOST_BYTES, check_memory, check_work
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.problem.lattice_settings import Progress
 from ffsr_plan.problem.problem import Problem
 
 BYTES_PER_PAIR_OF_OFFSETS = 64
@@ -44,6 +45,9 @@ def check_lattice(problem: Problem, bytes_per_edge: float = 1.0, ants: int = 0) 
     axes = [getattr(lattice, name) for name in lattice.axes]
     nodes = math.prod(2 * axis.half_count + 1 for axis in axes)
     layers = lattice.divisions + 1
+    if lattice.progress is not None:
+        _check_progress(problem, lattice.progress, layers, nodes)
+        return
     shapes = int(problem.robot.collision_model.ngeoms)
     per_layer = _BYTES_PER_LAYER + _BYTES_PER_SHAPE * shapes
     fixed = layers * (per_layer + _BYTES_PER_NODE * nodes) + BYTES_PER_PAIR_OF_OFFSETS * nodes**2
@@ -57,6 +61,19 @@ def check_lattice(problem: Problem, bytes_per_edge: float = 1.0, ants: int = 0) 
     pairs = len(problem.robot.collision_model.collisionPairs)
     counts = {"layers": layers, "pairs of links": pairs}
     check_work("lattice", counts, _SECONDS_PER_PAIR, f"{_ADVICE}, or an SRDF that exempts pairs")
+
+
+def _check_progress(problem: Problem, progress: Progress, layers: int, nodes: int) -> None:
+    """Raise `InvalidInput` for a lattice with progress that would take too much memory."""
+    bodies, axes = len(problem.scene.bodies), len(problem.given_lattice.axes)
+    places = progress.before + progress.steps + progress.beyond + 1
+    shapes = int(problem.robot.collision_model.ngeoms)
+    moves = (2 * progress.most + 1) * (2 * progress.aside + 1) ** axes
+    each = 40.0 + moves * bool(bodies) + 240.0 * shapes * bodies / nodes
+    fixed = places * (2 * progress.most + 2) * (_BYTES_PER_LAYER + _BYTES_PER_SHAPE * shapes)
+    fixed += BYTES_PER_PAIR_OF_OFFSETS * nodes**2 + moves * places * nodes
+    counts = {"layers": layers, "places": places, "nodes": nodes}
+    check_memory("lattice", counts, each, _ADVICE, fixed)
 
 
 def check_colonies(problem: Problem, colonies: int) -> None:

@@ -9,6 +9,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.bodies.pace import Pace
 from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table
@@ -21,6 +22,7 @@ from ffsr_plan.goal_poses.inverse_kinematics import goals_at_pose
 from ffsr_plan.problem.base_window import Window, default_window
 from ffsr_plan.problem.configuration_rules import Configuration, Configurations, ModeName
 from ffsr_plan.problem.lattice_settings import Lattice
+from ffsr_plan.problem.timing_rules import check_duration, check_progress
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
@@ -70,6 +72,10 @@ class Problem:
             position where thrusters move it, and attitude where wheels hold it. `TreePlanner` takes
             the one whose path costs least, planners on a lattice take `goal`. The problem of a plan
             has the goal that was reached, and no alternatives.
+        duration: time from start to goal [s], needed where bodies move: a path is run at the pace
+            that `ramp` states, and proven for that pace. None where all is at rest.
+        ramp: share of the duration in which the robot speeds up evenly, and in which it slows down
+            at the end, 0 to 0.5; between, and with 0, layers follow one another at equal times.
 
     Raises:
         InvalidInput: naming the field, its value and what is allowed.
@@ -91,6 +97,8 @@ class Problem:
     window: Annotated[Given[Array | None, ArrayLike | None], Window()] = setting(default=None)
     min_clearance: Annotated[float, Number(at_least=0.0, at_most=_LARGEST)] = 0.0
     alternatives: Annotated[Given[Array, ArrayLike], Configurations()] = setting(default=())
+    duration: Annotated[float, Number(above=0.0, at_most=_LARGEST)] | None = None
+    ramp: Annotated[float, Number(at_least=0.0, at_most=0.5)] = 0.0
 
     def __post_init__(self) -> None:
         self._check_travel()
@@ -99,6 +107,9 @@ class Problem:
         self._check_window()
         self._check_clearance()
         self._check_alternatives()
+        check_duration(self.scene, self.duration, self.ramp)
+        if self.lattice is not None:
+            check_progress(self.lattice, self.mode, self.base_displacement)
 
     def __repr__(self) -> str:
         fields = ", ".join(f"{name}={value}" for name, value in self._summary())
@@ -148,7 +159,7 @@ class Problem:
             tries = DESCENTS
         goals = goals_at_pose(
             self.robot,
-            self.obstacles,
+            self.obstacles.at(self.duration or 0.0),
             frame,
             position,
             attitude,
@@ -213,6 +224,10 @@ class Problem:
         if self.mode.floats:
             return frozen(np.zeros(3))
         return frozen(self.goal[:3] - self.start[:3])
+
+    def pace(self, edges: int) -> Pace | None:
+        """The pace of a path of so many equal edges; None without a duration."""
+        return None if self.duration is None else Pace(self.duration, self.ramp, edges)
 
     @cached_property
     def joint_displacement(self) -> Array:

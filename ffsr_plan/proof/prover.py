@@ -12,24 +12,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ffsr_plan.bodies.pace import Pace
+from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_collision
-from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
+from ffsr_plan.collision.distances import Nearest, ObstacleQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array, IntArray, records
 from ffsr_plan.core.errors import NoPath
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.proof.course import course_in_base, course_of
+from ffsr_plan.proof.course import course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import (
     NominalPlacements,
     ObstacleEdge,
-    SelfCollisionEdge,
-    joint_configuration,
     odd_times,
 )
+from ffsr_plan.proof.moving_obstacles import MovingObstacles, worse
 from ffsr_plan.proof.sampled_edges import sample_edges
+from ffsr_plan.proof.self_collision_proof import LinkProof
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -38,8 +40,6 @@ if TYPE_CHECKING:
 
 _BOUND_PRECISION = 0.05  # relative difference of a path's proven and computed least clearance
 _EDGES_AT_ONCE = 64  # edges that are proven between two looks at the deadline
-_ITERATION_ERROR = 1e-7  # [m] for distances that Coal iterates to 1e-8
-_RELATIVE_ITERATION_ERROR = 4e-9  # for each metre between the centres of the two shapes
 
 
 class Prover:
@@ -49,6 +49,7 @@ class Prover:
         speeds: (m,) bound on the travel [m] of any point over an edge of each layer, in addition
             to the base's own.
         rounding: length that is added to every travel bound [m].
+        links: proofs that links do not touch one another.
     """
 
     def __init__(
@@ -57,6 +58,7 @@ class Prover:
         scene: Scene,
         tolerance: float,
         deadline: Deadline | None = None,
+        pace: Pace | None = None,
     ) -> None:
         """Prepare the proofs.
 
@@ -65,26 +67,39 @@ class Prover:
             scene: the obstacles.
             tolerance: clearance below which an edge may be refused [m].
             deadline: after which distance queries, and so all proofs, raise `OutOfTime`.
+            pace: at which the motion is run; without it no body may move.
+
+        Raises:
+            InvalidInput: bodies move, and there is no pace.
         """
-        self._motion, self._scene, self.tolerance = nominal, scene, tolerance
+        self._motion, self._scene, self.tolerance, self._pace = nominal, scene, tolerance, pace
         self._deadline = deadline or Deadline()
         self._deadline.check()
-        self._obstacles = ObstacleQuery(nominal.robot, scene, deadline)
-        self._self = SelfQuery(nominal.robot, deadline)
+        fixed = scene if pace is None else scene.at_rest
+        self._obstacles = ObstacleQuery(nominal.robot, fixed, deadline)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
+        self.links = LinkProof(nominal, self._travel, tolerance, self._deadline)
         self._placements = NominalPlacements(nominal)
         self._corners = shape_placements(nominal.robot, nominal.configurations())
-        self.speeds = self._travel.speeds
-        self.rounding = ROUNDING + self._travel.attitude_error
-        self._exact = bool(nominal.robot.primitives.exact.all()) and scene.is_closed_form
-        if not self._exact:
-            largest = float(np.max(scene.tree.spheres[:, 3], initial=0.0))
-            self.rounding += _ITERATION_ERROR + _RELATIVE_ITERATION_ERROR * largest
+        self.speeds = self._own_speeds = self._travel.speeds
+        rounding = ROUNDING + self._travel.attitude_error
+        iterated = iteration_error(nominal.robot, fixed)
+        self._exact = iterated == 0.0
+        self.rounding = self._rounding = rounding + iterated
+        self._moving: MovingObstacles | None = None
+        if pace is not None and scene.bodies:
+            self._moving = MovingObstacles(
+                nominal, scene, pace, self._travel, self._placements, self._corners, rounding,
+                self._deadline,
+            )  # fmt: skip
+            self.speeds = self.speeds + self._moving.travel
+            self.rounding = max(self._rounding, self._moving.rounding)
 
     @property
     def queries(self) -> int:
         """Number of Coal queries so far, each over all pairs of one configuration."""
-        return self._obstacles.count + self._self.count
+        moving = 0 if self._moving is None else self._moving.queries
+        return self._obstacles.count + self.links.queries + moving
 
     def clearances(self, layers: IntArray, offsets: Array) -> Array:
         """Clearances at layers of the displaced motion.
@@ -96,7 +111,10 @@ class Prover:
         Returns:
             (k,) distances to the nearest obstacle [m].
         """
-        return self._obstacles.distances_at(self._corners, layers, offsets)
+        found = self._obstacles.distances_at(self._corners, layers, offsets)
+        if self._moving is None:
+            return found
+        return self._moving.least(0, layers, offsets, found)
 
     def half_way(self, layers: IntArray, offsets: Array) -> Array:
         """Clearances half-way on edges of the displaced motion, in closed form for a search.
@@ -108,7 +126,10 @@ class Prover:
         Returns:
             (k,) distances to the nearest obstacle [m].
         """
-        return self._obstacles.closed_at(self._placements.between(2), layers, offsets)
+        found = self._obstacles.closed_at(self._placements.between(2), layers, offsets)
+        if self._moving is None:
+            return found
+        return self._moving.least(2, layers, offsets, found)
 
     def sampled_edges(
         self, layers: IntArray, tails: Array, heads: Array, ends: Array
@@ -131,7 +152,10 @@ class Prover:
             rows = np.arange(len(times))[:, None] * self._motion.edges + layers[which]
             offsets = (1.0 - times[..., None]) * tails[which] + times[..., None] * heads[which]
             placed = self._placements.between(parts)
-            found = self._obstacles.distances_at(placed, rows.ravel(), offsets.reshape(-1, 3))
+            flat = rows.ravel(), offsets.reshape(-1, 3)
+            found = self._obstacles.distances_at(placed, *flat)
+            if self._moving is not None:
+                found = self._moving.least(parts, *flat, found)
             return found.reshape(rows.shape)
 
         return sample_edges(measure, ends, speeds, self.rounding, self.tolerance)
@@ -159,7 +183,7 @@ class Prover:
             layer,
             (tail, head),
             self.base_step(layer, tail, head),
-            self.rounding,
+            self._rounding,
         )
 
     def certify(self, layer: int, tail: Array, head: Array, ends: tuple[float, float]) -> Verdict:
@@ -189,10 +213,11 @@ class Prover:
             heads: (k, 3) offsets at their ends [m].
             ends: (k, 2) clearances at their starts and ends [m].
         """
-        if self._course is None:
-            return [Verdict(True, np.inf, 0.0, 0)] * len(layers)
         if not len(layers):
             return []
+        if self._course is None:
+            free = [Verdict(True, np.inf, 0.0, 0)] * len(layers)
+            return self._past_bodies(layers, tails, heads, ends, free)
         from ffsr_plan.proof.kernels import edge_proof
 
         edges, course = records(edge_proof.EDGE, len(layers)), self._course
@@ -202,8 +227,9 @@ class Prover:
             self._deadline.check()
             some = edges[first : first + _EDGES_AT_ONCE]
             edge_proof.prove(
-                course, self.speeds, some, self.rounding, self.tolerance, self._memory, halving
-            )
+                course, self._own_speeds, some, self._rounding, self.tolerance, self._memory,
+                halving,
+            )  # fmt: skip
         verdicts, columns = [], [edges[name] for name in ("state", "least", "time", "count")]
         for k, (state, least, time, count) in enumerate(
             zip(*(column.tolist() for column in columns), strict=True)
@@ -219,6 +245,19 @@ class Prover:
                 verdicts.append(Verdict(False, touched, time, count))
             else:
                 verdicts.append(certify(edge, (ends[k, 0], ends[k, 1]), self.tolerance))
+        return self._past_bodies(layers, tails, heads, ends, verdicts)
+
+    def _past_bodies(
+        self, layers: IntArray, tails: Array, heads: Array, ends: Array, verdicts: list[Verdict]
+    ) -> list[Verdict]:
+        """The verdicts, after a look at the bodies that move."""
+        left = np.flatnonzero([verdict.free for verdict in verdicts])
+        if self._moving is None or not len(left):
+            return verdicts
+        edges = layers[left], tails[left], heads[left], ends[left]
+        found = self._moving.certify(*edges, self.tolerance)
+        for k, verdict in zip(left.tolist(), found, strict=True):
+            verdicts[k] = worse(verdicts[k], verdict)
         return verdicts
 
     @cached_property
@@ -226,7 +265,8 @@ class Prover:
         """The motion among the obstacles for kernels; None where there are none."""
         if self._obstacles.empty:
             return None
-        return course_of(self._motion, self._scene, self._travel)
+        fixed = self._scene if self._pace is None else self._scene.at_rest
+        return course_of(self._motion, fixed, self._travel)
 
     @cached_property
     def _memory(self) -> Memory:
@@ -249,20 +289,28 @@ class Prover:
             OutOfTime: at the deadline.
         """
         self._deadline.check()
+        found = self._least_at_rest(offsets, clearances)
+        if self._moving is not None:
+            least = float(np.min(clearances))
+            found = min(found, self._moving.least_clearance(offsets, least, _BOUND_PRECISION))
+        return max(found, 0.0)  # not negative, because the edges have been proven free
+
+    def _least_at_rest(self, offsets: Array, clearances: Array) -> float:
+        """The bound as far as the obstacles at rest count [m]."""
         if self._course is not None and self._exact:
             from ffsr_plan.proof.kernels.path_clearance import parts_for, path_clearance
 
             found = path_clearance(
-                self._course, self.speeds, np.array(offsets), np.array(clearances), self.rounding,
-                _BOUND_PRECISION, self._memory, parts_for(self._course),
+                self._course, self._own_speeds, np.array(offsets), np.array(clearances),
+                self._rounding, _BOUND_PRECISION, self._memory, parts_for(self._course),
             )  # fmt: skip
-            return max(float(found), 0.0)  # not negative, because the edges have been proven free
+            return float(found)
         bound = least = float(np.min(clearances))
         for layer, ends in enumerate(pairwise(map(float, clearances))):
             edge = self.obstacle_edge(layer, offsets[layer], offsets[layer + 1])
             edge_bound, least = clearance_bound(edge, ends, least, _BOUND_PRECISION)
             bound = min(bound, edge_bound)
-        return max(bound, 0.0)
+        return bound
 
     def nearest(self, layer: int, tail: Array, head: Array, time: float) -> Nearest:
         """The nearest link and obstacle at a time on an edge.
@@ -274,11 +322,11 @@ class Prover:
             time: the time on it, in [0, 1].
         """
         offset = self.obstacle_edge(layer, tail, head).offset(time)
-        return self._obstacles.nearest_at(self._placements.at(time), layer, offset)
-
-    def nearest_links(self, layer: int, time: float) -> Nearest:
-        """The nearest two links that must not touch, at a time in [0, 1] on an edge."""
-        return self._self.nearest(joint_configuration(self._motion, layer, time))
+        found = self._obstacles.nearest_at(self._placements.at(time), layer, offset)
+        if self._moving is None:
+            return found
+        other = self._moving.nearest(layer, tail, head, time)
+        return min(found, other, key=lambda pair: pair.distance)
 
     def check_ends(self) -> None:
         """Check that start and goal touch nothing.
@@ -287,16 +335,21 @@ class Prover:
             StartInCollision: with all that touches there, and at the goal.
             GoalInCollision: with all that touches there.
         """
-        robot, scene, goal = self._motion.robot, self._scene, self._motion.edges
+        robot, goal, still = self._motion.robot, self._motion.edges, np.zeros(3)
         for layer in (0, goal):
-            pairs = (
-                self._obstacles.nearest_at(self._corners, layer, np.zeros(3)),
-                self.nearest_links(layer, 0.0),
-            )
+            pairs = [
+                self._obstacles.nearest_at(self._corners, layer, still),
+                self.links.nearest(layer, 0.0),
+            ]
+            if self._moving is not None:
+                pairs.append(self._moving.nearest(layer, still, still, 0.0))
             if min(nearest.distance for nearest in pairs) <= 0.0:
-                configurations = self._motion.configurations()
+                configurations, scene = self._motion.configurations(), self._scene
+                if self._pace is not None:
+                    scene = scene.at(float(self._pace.instants(np.array(layer))))
                 if layer == 0:
-                    raise start_in_collision(robot, scene, configurations[0], configurations[-1])
+                    end = None if self._moving else configurations[-1]  # at another time
+                    raise start_in_collision(robot, scene, configurations[0], end)
                 raise goal_in_collision(robot, scene, configurations[-1])
 
     def check_self_collision(self, advice: tuple[str, ...] = ()) -> None:
@@ -308,30 +361,8 @@ class Prover:
         Raises:
             NoPath: with the first edge on which two links come too close.
         """
-        for layer, verdict in enumerate(self.self_verdicts()):
+        for layer, verdict in enumerate(self.links.verdicts()):
             if not verdict.free:
-                near = self.nearest_links(layer, verdict.time)
+                near = self.links.nearest(layer, verdict.time)
                 links, contacts = (near.link, str(near.obstacle)), (named(self._scene, near),)
                 raise NoPath(layer + 1, links, self._motion.edges, contacts, advice)
-
-    def self_verdicts(self) -> list[Verdict]:
-        """(m,) for each edge, whether links that must not touch are proven apart.
-
-        Lower bounds decide for the pairs that are far apart; Coal measures the others.
-        """
-        motion, rounding = self._motion, ROUNDING + _ITERATION_ERROR
-        verdicts = [Verdict(True, np.inf, 0.0, 0)] * motion.edges
-        if self._self.empty:
-            return verdicts
-        from ffsr_plan.proof.kernels.apart import known_for, prove_apart
-        from ffsr_plan.proof.kernels.course import memory_for
-
-        course, pairs = course_in_base(motion, self._travel), self._self.pairs
-        proven, memory = np.zeros((motion.edges, len(pairs)), dtype=np.bool_), memory_for(course)
-        prove_apart(course, pairs, rounding, memory, known_for(course), proven)
-        for layer in np.flatnonzero(~proven.all(axis=1)).tolist():
-            open_pairs = np.flatnonzero(~proven[layer])
-            edge = SelfCollisionEdge(self._self, motion, self._travel, layer, open_pairs, rounding)
-            ends = edge.clearance(0.0), edge.clearance(1.0)
-            verdicts[layer] = certify(edge, ends, self.tolerance)
-        return verdicts

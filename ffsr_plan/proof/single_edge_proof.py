@@ -88,10 +88,10 @@ def certify_edge(
     prover = Prover(motion, scene, number("tolerance", tolerance, at_least=1e-7))
     offset = np.zeros(3)
     ends = prover.clearances(np.array([0, 1]), np.zeros((2, 3)))
-    (links_verdict,) = prover.self_verdicts()
+    (links_verdict,) = prover.links.verdicts()
     verdict = prover.certify(0, offset, offset, (float(ends[0]), float(ends[1])))
     if verdict.free and not links_verdict.free:
-        verdict, nearest = links_verdict, prover.nearest_links(0, links_verdict.time)
+        verdict, nearest = links_verdict, prover.links.nearest(0, links_verdict.time)
     else:
         nearest = prover.nearest(0, offset, offset, verdict.time)
     proven = prover.least_clearance(np.zeros((2, 3)), ends) if verdict.free else 0.0

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 
+from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import path as checked_path
@@ -17,6 +18,7 @@ from ffsr_plan.core.settings import from_mapping
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.plans.planner_registry import Planner
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.problem.timing_rules import check_duration
 from ffsr_plan.scenario_files.scenario_schema import ScenarioFile
 from ffsr_plan.scenario_files.shape_tables import with_names
 from ffsr_plan.scene.scene import Scene
@@ -120,8 +122,9 @@ def _scenario(file: ScenarioFile, folder: Path) -> Scenario:
     base_stays = file.goal.end_effector is not None and mode.floats
     base_goal = start[:3] if base_stays else file.goal.base_position
     scene = _scene(file, folder, [start[:3], base_goal])
+    check_duration(scene, file.pace.duration, file.pace.ramp)
     with _in_table("goal"):
-        around = scene.grown(file.objective.min_clearance)
+        around = scene.grown(file.objective.min_clearance).at(file.pace.duration or 0.0)
         goals = file.goal.configurations(robot, around, start, mode, file.lattice is None)
     demanded = file.goal.attitude is not None or file.goal.end_effector is not None
     problem = Problem(
@@ -137,6 +140,7 @@ def _scenario(file: ScenarioFile, folder: Path) -> Scenario:
         and mode.attitude_reacts
         and (file.lattice is None or bool(file.lattice.postures)),
         **{each.name: getattr(file.objective, each.name) for each in fields(file.objective)},
+        **{each.name: getattr(file.pace, each.name) for each in fields(file.pace)},
     )
     planner = file.planner
     return Scenario(file.title, problem, planner.planner(), planner.seed, planner.refine)
@@ -180,7 +184,11 @@ def _scene(file: ScenarioFile, folder: Path, ends: Sequence[Array]) -> Scene:
         for k, table in enumerate(getattr(file, name)):
             with _in_table(f"{name}.{k}"):
                 scene += table.scene(ends).named(f"{name}.{k}")
-    return scene + Scene(keep_in=[table.zone for table in file.keep_in])
+    bodies = list[MovingBody]()
+    for k, body in enumerate(file.bodies):
+        with _in_table(f"bodies.{k}"):
+            bodies.append(body.body(folder))
+    return scene + Scene(keep_in=[table.zone for table in file.keep_in], bodies=bodies)
 
 
 @contextmanager

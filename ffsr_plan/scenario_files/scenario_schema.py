@@ -26,6 +26,7 @@ from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.srdf import NO_POSTURE
 from ffsr_plan.robots.urdf.inertias import INERTIA
 from ffsr_plan.robots.urdf.links import COLLISION
+from ffsr_plan.scenario_files.body_tables import BodyTable, PaceTable
 from ffsr_plan.scenario_files.obstacle_tables import (
     BeltTable,
     CloudTable,
@@ -253,6 +254,8 @@ class ScenarioFile:
         scatters: a few random spheres in the xy-plane.
         trusses: booms of struts.
         gates: pairs of spheres.
+        bodies: bodies that move.
+        pace: the time from start to goal, where bodies move.
         lattice: layers and axes; without it, the base may be anywhere in the window, and joints
             within their limits.
         window: where the base may be without a lattice.
@@ -273,6 +276,8 @@ class ScenarioFile:
     scatters: tuple[ScatterTable, ...] = ()
     trusses: tuple[TrussTable, ...] = ()
     gates: tuple[GateTable, ...] = ()
+    bodies: tuple[BodyTable, ...] = ()
+    pace: PaceTable = field(default_factory=PaceTable)
     objective: ObjectiveTable = field(default_factory=ObjectiveTable)
     planner: Annotated[PlannerTable, ByPlannerName()] = field(default_factory=PlannerTable)
 

@@ -8,8 +8,9 @@ from typing import Annotated
 
 from ffsr_plan.core.setting_rules import ByKey, FilePath, Number
 from ffsr_plan.core.settings import setting, settings
-from ffsr_plan.scene.keep_in_zones import HalfSpace, Zone
-from ffsr_plan.scene.obstacle_shapes import (
+from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace, Zone
+from ffsr_plan.scene.shapes.obstacle_shapes import (
     Ball,
     Box,
     Capsule,
@@ -21,7 +22,6 @@ from ffsr_plan.scene.obstacle_shapes import (
     Place,
     Turn,
 )
-from ffsr_plan.scene.scene import Scene
 
 
 class _OneShape:

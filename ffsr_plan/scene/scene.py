@@ -1,8 +1,7 @@
-"""Obstacles at rest in the world: spheres, shapes of other kinds, and the outside of zones."""
+"""Obstacles: spheres, shapes of other kinds, the outside of zones, and bodies that move."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -12,27 +11,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, content
 from ffsr_plan.core.checks import FARTHEST, finite_array, number, text, truth
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.core.formatting import counted, html_table
+from ffsr_plan.core.formatting import html_table
 from ffsr_plan.meshes import mesh_files
 from ffsr_plan.meshes.sphere_cover import cover
 from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene import sphere_files
-from ffsr_plan.scene.keep_in_zones import ZONES, Zone
-from ffsr_plan.scene.obstacle_shapes import SHAPES, ObstacleShape
-from ffsr_plan.scene.obstacle_tree import ObstacleTree, obstacle_tree
 from ffsr_plan.scene.scene_contents import (
     checked_members,
     checked_sources,
+    contents,
     member_title,
     row_count,
 )
+from ffsr_plan.scene.shapes.extents import extents
+from ffsr_plan.scene.shapes.keep_in_zones import ZONES, Zone
+from ffsr_plan.scene.shapes.obstacle_shapes import SHAPES, ObstacleShape
+from ffsr_plan.scene.shapes.obstacle_tree import ObstacleTree, obstacle_tree
 from ffsr_plan.scene.urdf_shapes import shapes_of
 
 _LARGEST_SCALE = 1e9  # [m] per unit of a mesh
@@ -42,8 +44,8 @@ _LARGEST_SCALE = 1e9  # [m] per unit of a mesh
 class Scene:
     """Obstacles. `scene + other` holds the obstacles of both, those of `scene` first.
 
-    Obstacles are numbered: the spheres, then the shapes, then the zones. Two scenes are equal if
-    they hold the same obstacles in the same order.
+    Obstacles are numbered: the spheres, then the shapes, the zones and the moving bodies. Two
+    scenes are equal if they hold the same obstacles in the same order.
 
     Attributes:
         centers: (N, 3) centres in the world [m].
@@ -54,7 +56,8 @@ class Scene:
             mesh file, and a number of spheres. Errors name obstacles by them. Empty if unknown.
         shapes: obstacles of other shapes.
         keep_in: convex zones, each of which the whole robot stays in.
-        growth: distance by which the shapes are grown on all sides, and the zones shrunk [m].
+        growth: distance by which shapes and bodies are grown on all sides, and zones shrunk [m].
+        bodies: obstacles that move. Bodies do not see one another, nor what is at rest.
     """
 
     centers: Array
@@ -64,6 +67,7 @@ class Scene:
     shapes: tuple[ObstacleShape, ...] = ()
     keep_in: tuple[Zone, ...] = ()
     growth: float = 0.0
+    bodies: tuple[MovingBody, ...] = ()
 
     def __init__(
         self,
@@ -74,6 +78,7 @@ class Scene:
         shapes: Sequence[ObstacleShape] = (),
         keep_in: Sequence[Zone] = (),
         growth: float = 0.0,
+        bodies: Sequence[MovingBody] = (),
     ) -> None:
         """Check the obstacles and make them read-only.
 
@@ -85,10 +90,11 @@ class Scene:
             shapes: `Box`, `Ball`, `Capsule`, `Cylinder`, `Ellipsoid` or `Hull`.
             keep_in: `Box`, `Ball` or `HalfSpace`.
             growth: see the class.
+            bodies: obstacles that move.
 
         Raises:
             InvalidInput: arrays that do not fit; a number that is not finite, or a radius <= 0,
-                with the index of the sphere; or something that is no shape or zone.
+                with the index of the sphere; or something that is no shape, zone or body.
         """
         check_memory(
             "scene", {"spheres": row_count(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
@@ -103,6 +109,7 @@ class Scene:
         )
         object.__setattr__(self, "keep_in", checked_members("keep_in", keep_in, ZONES))
         object.__setattr__(self, "growth", number("scene growth", growth, at_least=0.0))
+        object.__setattr__(self, "bodies", checked_members("bodies", bodies, (MovingBody,)))
 
     def grown(self, by: float) -> Scene:
         """The same obstacles, grown on all sides; the names of the spheres' sources say so.
@@ -114,10 +121,8 @@ class Scene:
             return self
         names = self.sources or (("the scene", len(self.radii)),) * (len(self.radii) > 0)
         sources = [(f"{name}, grown by {by:g} m", count) for name, count in names]
-        growth = self.growth + by if self.shapes or self.keep_in else 0.0
-        return Scene(
-            self.centers, self.radii + by, self.excess, sources, self.shapes, self.keep_in, growth,
-        )  # fmt: skip
+        growth = self.growth + by if self._has_growth else 0.0
+        return replace(self, radii=self.radii + by, sources=sources, growth=growth)  # type: ignore[arg-type]
 
     @classmethod
     def from_csv(cls, path: str | Path) -> Scene:
@@ -236,9 +241,7 @@ class Scene:
             source: such as the name of a part.
         """
         sources = [(source, len(self.radii))] if len(self.radii) else []
-        return Scene(
-            self.centers, self.radii, self.excess, sources, self.shapes, self.keep_in, self.growth
-        )
+        return replace(self, sources=sources)  # type: ignore[arg-type]
 
     def source_of(self, obstacle: int) -> str:
         """What a sphere comes from, or the name of a shape or zone; empty if that is unknown.
@@ -251,10 +254,7 @@ class Scene:
             end += count
             if obstacle < end:
                 return name
-        others, place = (*self.shapes, *self.keep_in), obstacle - len(self.radii)
-        return (
-            member_title(others[place], place, len(self.shapes)) if 0 <= place < len(others) else ""
-        )
+        return member_title(self._members, obstacle - len(self.radii))
 
     def to_csv(self, path: str | Path) -> None:
         """Write a table that `from_csv` reads again bit for bit; `excess` is not written.
@@ -269,8 +269,39 @@ class Scene:
 
     @cached_property
     def tree(self) -> ObstacleTree:
-        """The obstacles as a tree, built at the first use."""
+        """The obstacles as a tree, built at the first use.
+
+        Raises:
+            InvalidInput: bodies move, so that there is no such tree; `at(time)` has one.
+        """
+        if self.bodies:
+            allowed = "no body that moves, where nothing tells the time"
+            raise InvalidInput("scene bodies", list(self.bodies), allowed)
         return obstacle_tree(self.centers, self.radii, self.shapes, self.keep_in, self.growth)
+
+    @cached_property
+    def at_rest(self) -> Scene:
+        """The obstacles that do not move."""
+        return replace(self, bodies=()) if self.bodies else self
+
+    @cached_property
+    def body_scenes(self) -> tuple[Scene, ...]:
+        """The shapes of each body along its own axes, at rest there, grown like all others."""
+        return tuple(Scene(shapes=body.shapes, growth=self.growth) for body in self.bodies)
+
+    def at(self, time: float) -> Scene:
+        """All obstacles where they are at one time, at rest there.
+
+        Args:
+            time: [s], up to which the motions of all bodies are known.
+
+        Returns:
+            A scene whose shapes are those of this one, then those of the bodies.
+        """
+        placed = list(self.shapes)
+        for k, body in enumerate(self.bodies):
+            placed += body.shapes_at(time, f"bodies.{k}")
+        return replace(self, shapes=placed, bodies=()) if self.bodies else self  # type: ignore[arg-type]
 
     @property
     def is_closed_form(self) -> bool:
@@ -295,6 +326,7 @@ class Scene:
             self.shapes + other.shapes,
             self.keep_in + other.keep_in,
             _common_growth(self, other),
+            self.bodies + other.bodies,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -308,6 +340,11 @@ class Scene:
     def _content(self) -> object:
         return content(tuple(getattr(self, each.name) for each in fields(self)))
 
+    @property
+    def _has_growth(self) -> bool:
+        """Whether there is something that growth applies to."""
+        return any(self._members.values())
+
     def _all_sources(self) -> tuple[tuple[str, int], ...]:
         count = len(self.radii)
         return self.sources or ((("", count),) if count else ())
@@ -318,7 +355,7 @@ class Scene:
 
     def _repr_html_(self) -> str:
         rows = {"spheres": str(len(self.radii)), "extent": self._extent() or "empty"}
-        if self.shapes or self.keep_in:
+        if self._has_growth:
             rows = {"obstacles": self.contents, **rows}
         if self.excess:
             rows["excess"] = f"{self.excess:g} m"
@@ -327,19 +364,19 @@ class Scene:
     @property
     def contents(self) -> str:
         """How many obstacles of each kind there are."""
-        words = Counter(shape.word for shape in self.shapes)
-        parts = [counted(len(self.radii), "sphere")] * bool(len(self.radii) or not self.shapes)
-        parts += [f"{count} {_plural(word, count)}" for word, count in words.items()]
-        parts += [counted(len(self.keep_in), "zone")] * bool(self.keep_in)
-        return ", ".join(parts)
+        return contents(len(self.radii), self._members)
+
+    @property
+    def _members(self) -> dict[str, tuple[Any, ...]]:
+        """The obstacles that are no spheres."""
+        return {name: getattr(self, name) for name in ("shapes", "keep_in", "bodies")}
 
     def bounds(self) -> Array:
-        """(2, 3) least and greatest coordinates of spheres and shapes [m]; (0, 3) without any."""
-        spheres = self.tree.spheres
-        if not len(spheres):
-            return np.zeros((0, 3))
-        low, high = spheres[:, :3] - spheres[:, 3:], spheres[:, :3] + spheres[:, 3:]
-        return np.stack([low.min(axis=0), high.max(axis=0)])
+        """(2, 3) least and greatest coordinates of what is at rest [m]; (0, 3) without any."""
+        radii, ends = self.radii[:, None], extents(self.shapes)
+        low = np.vstack([self.centers - radii, ends[:, 0] - self.growth])
+        high = np.vstack([self.centers + radii, ends[:, 1] + self.growth])
+        return np.stack([low.min(axis=0), high.max(axis=0)]) if len(low) else np.zeros((0, 3))
 
     def _extent(self) -> str:
         """The box around spheres and shapes, in words."""
@@ -351,19 +388,13 @@ class Scene:
         return ", ".join(f"{axis} {a:.4g} to {b:.4g} m" for axis, a, b in sides)
 
     def __len__(self) -> int:
-        """Number of obstacles: spheres, shapes and zones."""
-        return len(self.radii) + len(self.shapes) + len(self.keep_in)
+        """Number of obstacles: spheres, shapes, zones and bodies."""
+        return len(self.radii) + len(self.shapes) + len(self.keep_in) + len(self.bodies)
 
 
 def _common_growth(one: Scene, other: Scene) -> float:
     """The growth of the shapes and zones of two scenes, which is one for both."""
-    grown = [each.growth for each in (one, other) if each.shapes or each.keep_in]
+    grown = [each.growth for each in (one, other) if each._has_growth]
     if len(set(grown)) > 1:
-        raise InvalidInput("scene growth", grown, "one growth of all shapes and zones")
+        raise InvalidInput("scene growth", grown, "one growth of all shapes, zones and bodies")
     return grown[0] if grown else 0.0
-
-
-def _plural(word: str, count: int) -> str:
-    if count == 1:
-        return word
-    return word + ("es" if word.endswith("x") else "s")

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from ffsr_plan.core.checks import whole_number
-from ffsr_plan.core.contacts import ShapeName, ZoneName
+from ffsr_plan.core.contacts import RoundName, ShapeName, ZoneName
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.scene.keep_in_zones import Zone
-from ffsr_plan.scene.obstacle_shapes import ObstacleShape
+from ffsr_plan.core.formatting import counted
+
+_ROUND = ("cylinder", "ellipsoid")  # obstacles in which depths are not known
 
 
 def checked_members(what: str, given: object, kinds: tuple[type, ...]) -> tuple[Any, ...]:
@@ -34,19 +36,46 @@ def checked_members(what: str, given: object, kinds: tuple[type, ...]) -> tuple[
     return tuple(given)
 
 
-def member_title(member: ObstacleShape | Zone, place: int, shapes: int) -> str:
-    """A shape or zone as messages name it.
+def member_title(members: Mapping[str, Sequence[Any]], place: int) -> str:
+    """A shape, zone or body as messages name it; empty where there is none.
 
     Args:
-        member: the shape or zone.
-        place: its place among the shapes and the zones behind them.
-        shapes: number of shapes.
+        members: the objects of each field of the scene.
+        place: place of one among all of them.
     """
-    zone = place >= shapes
-    number = place - shapes if zone else place
-    field = f"keep_in.{number}" if zone else f"shapes.{number}"
+    listed = [(f"{field}.{k}", each) for field in members for k, each in enumerate(members[field])]
+    if not 0 <= place < len(listed):
+        return ""
+    field, member = listed[place]
     text = f"{member.word} '{member.name}'" if member.name else f"{member.word} ({field})"
-    return ZoneName(text) if zone else ShapeName(text)
+    if field.startswith("keep_in"):
+        return ZoneName(text)
+    parts = getattr(member, "shapes", (member,))
+    return (RoundName if any(part.word in _ROUND for part in parts) else ShapeName)(text)
+
+
+def contents(spheres: int, members: Mapping[str, Sequence[Any]]) -> str:
+    """How many obstacles of each kind there are, in words.
+
+    Args:
+        spheres: number of spheres.
+        members: the objects of each field of the scene.
+    """
+    words = Counter(
+        "zone" if field == "keep_in" else each.word for field in members for each in members[field]
+    )
+    plain = bool(spheres or not (members["shapes"] or members["bodies"]))
+    parts = [counted(spheres, "sphere")] * plain
+    parts += [f"{count} {_plural(word, count)}" for word, count in words.items()]
+    return ", ".join(parts)
+
+
+def _plural(word: str, count: int) -> str:
+    if count == 1:
+        return word
+    if word.endswith("y"):
+        return f"{word[:-1]}ies"
+    return word + ("es" if word.endswith("x") else "s")
 
 
 def row_count(values: object) -> int:

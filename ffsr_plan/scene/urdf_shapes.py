@@ -12,7 +12,7 @@ import pinocchio as pin
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.robots.collision_shapes import origin
 from ffsr_plan.robots.robot import SpaceRobot
-from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Hull, ObstacleShape
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Capsule, Cylinder, Hull, ObstacleShape
 
 
 def shapes_of(robot: SpaceRobot, q: Array, name: str) -> Iterator[ObstacleShape]:

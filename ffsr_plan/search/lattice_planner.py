@@ -15,6 +15,7 @@ from ffsr_plan.lattice.roadmap import Roadmap
 from ffsr_plan.problem.memory_estimate import check_lattice
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.refinement.refined_path import refined_path
+from ffsr_plan.search.progress_solution import solve_with_progress
 from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult, Solution
 from ffsr_plan.search.workers import in_process, run_on_workers
 
@@ -53,6 +54,9 @@ class LatticePlanner(ABC):
         """Raise `InvalidInput` if the planner cannot solve the problem, naming one that can."""
         if problem.lattice is None:
             raise InvalidInput("planner", self.name, "tree-planner, or a problem with a lattice")
+        if problem.lattice.progress is not None:
+            allowed = "lattice-optimum on a lattice with progress, or a lattice without it"
+            raise InvalidInput("planner", self.name, allowed)
         if not problem.given_lattice.postures:
             return
         reason = "this planner searches one configuration a node"
@@ -65,18 +69,19 @@ class LatticePlanner(ABC):
         """Search the problem's lattice, state the optimum, refine the path and certify it.
 
         Args:
-            problem: a problem without posture axes.
+            problem: a problem without posture axes, which `refuse` refuses.
             rng: source of randomness.
             request: colonies, workers, refinement, callback and stopping condition.
 
         Raises:
-            InvalidInput: the lattice has posture axes.
             StartInCollision, GoalInCollision: with link, obstacle and depth.
             NoPath: the lattice holds no free path, with the layer that cannot be passed.
             PlanningError: no path was found; `OutOfTime` if none was proven in time.
             WorkerDied: a worker process ended without a result.
         """
         self.refuse(problem)
+        if problem.given_lattice.progress is not None:
+            return solve_with_progress(problem, request)
         check_lattice(problem, self.bytes_per_edge, getattr(self, "ants", 0))
         roadmap = Roadmap(problem, request.deadline)
         roadmap.deadline.stage = "the search for a path"
@@ -105,11 +110,10 @@ class LatticePlanner(ABC):
         roadmap.deadline.close()
         moved = motion.positions - lattice.nominal.positions
         least, cut = proven_clearance(prover, moved, clearances)
-        indices = lattice.indices[result.path]
         return Solution(
             lattice=lattice,
             motion=motion,
-            nodes=frozen(indices if indices.shape[1] > 1 else indices.sum(axis=1)),
+            nodes=lattice.indices_along(result.path),
             length=length,
             objective=objective,
             lattice_objective=lattice_objective,

@@ -10,8 +10,14 @@ from ffsr_plan.core.arrays import frozen
 from ffsr_plan.core.settings import settings
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.lattice.roadmap import Roadmap
+from ffsr_plan.problem.problem import Problem
 from ffsr_plan.search.lattice_planner import LatticePlanner
-from ffsr_plan.search.records import History, SearchMonitor, SearchResult, Trails
+from ffsr_plan.search.records import (
+    History,
+    SearchMonitor,
+    SearchResult,
+    Trails,
+)
 
 
 @settings
@@ -25,6 +31,11 @@ class LatticeOptimum(LatticePlanner):
     name: ClassVar[str] = "lattice-optimum"
     exact: ClassVar[bool] = True
     bytes_per_edge: ClassVar[float] = 2.0
+
+    def refuse(self, problem: Problem) -> None:
+        """Raise `InvalidInput` if the planner cannot solve the problem, naming one that can."""
+        if problem.lattice is None or problem.lattice.progress is None:
+            super().refuse(problem)
 
     def search(
         self, roadmap: Roadmap, rng: np.random.Generator, monitor: SearchMonitor | None = None

@@ -55,7 +55,7 @@ def prove_curve(problem: Problem, curve: CurvedMotion, tolerance: float) -> Curv
     ends = np.column_stack([clearances[:-1], clearances[1:]])
     verdicts = prover.certify_all(np.arange(m), still[1:], still[1:], ends)
     outside = _outside(problem, curve)
-    refused = outside | _not_free(verdicts) | _not_free(prover.self_verdicts())
+    refused = outside | _not_free(verdicts) | _not_free(prover.links.verdicts())
     return CurveProof(
         curve,
         prover,
@@ -74,7 +74,7 @@ def joints_are_proven(problem: Problem, curve: CurvedMotion) -> bool:
         curve: the curve.
     """
     prover = Prover(curve, problem.obstacles, problem.tolerance)
-    apart = all(verdict.free for verdict in prover.self_verdicts())
+    apart = all(verdict.free for verdict in prover.links.verdicts())
     return apart and not np.any(_outside(problem, curve))
 
 

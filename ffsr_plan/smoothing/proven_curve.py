@@ -199,7 +199,7 @@ def _unproven(
     still = np.zeros(3)
     pairs = (
         proof.prover.nearest(piece, still, still, 0.5),
-        proof.prover.nearest_links(piece, 0.5),
+        proof.prover.links.nearest(piece, 0.5),
     )
     contact = named(problem.obstacles, min(pairs, key=lambda each: each.distance))
     return UnprovenCurve(edge + 1, motion.edges, contact)

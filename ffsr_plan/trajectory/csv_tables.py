@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ffsr_plan.bodies.pace import Pace
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.text_files import write_text
@@ -26,12 +27,13 @@ Table = dict[str, Array]
 """Columns (N,), by header."""
 
 
-def path_table(motion: Motion, parameters: Array) -> Table:
+def path_table(motion: Motion, parameters: Array, pace: Pace | None = None) -> Table:
     """Base pose and joints along a path.
 
     Args:
         motion: the motion.
         parameters: (N,) path parameters in [0, 1].
+        pace: at which it is run, for a column of times; None without one.
 
     Returns:
         The columns.
@@ -39,7 +41,8 @@ def path_table(motion: Motion, parameters: Array) -> Table:
     scaled = parameters * motion.edges
     edge = np.minimum(scaled.astype(np.int64), motion.edges - 1)
     q, joints = motion.at(edge, scaled - edge), motion.joints_at(edge, scaled - edge)
-    return {"s [1]": parameters, **_pose(motion.robot, q, joints)}
+    times = {} if pace is None else {"t [s]": pace.instants(scaled)}
+    return {**times, "s [1]": parameters, **_pose(motion.robot, q, joints)}
 
 
 def trajectory_table(robot: SpaceRobot, times: Array, states: States) -> Table:

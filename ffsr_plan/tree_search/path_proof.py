@@ -80,11 +80,11 @@ def prove(space: SearchSpace, corners: Array, deadline: Deadline) -> PathProof:
     clearances, refusals = prover.clearances(np.arange(m + 1), still), []
     ends = np.column_stack([clearances[:-1], clearances[1:]])
     verdicts = prover.certify_all(np.arange(m), still[1:], still[1:], ends)
-    for edge, (verdict, links) in enumerate(zip(verdicts, prover.self_verdicts(), strict=True)):
+    for edge, (verdict, links) in enumerate(zip(verdicts, prover.links.verdicts(), strict=True)):
         if not verdict.free:
             refusals.append(Refusal(edge, prover.nearest(edge, still[0], still[0], verdict.time)))
         elif not links.free:
-            refusals.append(Refusal(edge, prover.nearest_links(edge, links.time)))
+            refusals.append(Refusal(edge, prover.links.nearest(edge, links.time)))
     missed = 0.0
     if problem.reach_attitude:
         missed = float(angle_between(motion.attitudes[-1], problem.goal[3:7]))

@@ -12,6 +12,12 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.verification.momentum_map import MomentumMap, momentum_map
+from ffsr_plan.verification.moving_bodies.scene_bodies import (
+    NO_BODIES,
+    BodyPoses,
+    SceneBodies,
+)
+from ffsr_plan.verification.moving_bodies.trapezoid_time import times_at
 from ffsr_plan.verification.rate_bounds import RateBounds
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 
@@ -23,6 +29,9 @@ if TYPE_CHECKING:
 class _OfProblem(Protocol):
     @property
     def problem(self) -> Problem: ...
+
+
+_NEVER: Array = np.zeros(0)
 
 
 class Samples(NamedTuple):
@@ -37,6 +46,8 @@ class Samples(NamedTuple):
         centers_of_mass: (N, 3) of the robot from the start's base origin, world axes [m].
         deviation: (N,) distance of joints and base from straight lines between corners [m, rad].
         rates: (N, nd) of the joints [rad or m per edge].
+        instants: (N,) times [s]; zeros for a plan without a duration.
+        moving: poses of the bodies that move, at these times.
     """
 
     base_turns: Array
@@ -47,13 +58,19 @@ class Samples(NamedTuple):
     centers_of_mass: Array
     deviation: Array
     rates: Array
+    instants: Array = _NEVER
+    moving: BodyPoses = NO_BODIES
 
     def with_turns_of(self, other: Samples) -> Samples:
-        """The same with the base rotations and momenta of more samples behind its own."""
+        """The same with turns of base and bodies, momenta and times of more samples behind."""
         momentum = self.momentum.followed_by(other.momentum)
         turns = np.concatenate([self.base_turns, other.base_turns])
         rates = np.concatenate([self.rates, other.rates])
-        return self._replace(base_turns=turns, momentum=momentum, rates=rates)
+        instants = np.concatenate([self.instants, other.instants])
+        moving = self.moving.followed_by(other.moving)
+        return self._replace(
+            base_turns=turns, momentum=momentum, rates=rates, instants=instants, moving=moving
+        )
 
 
 class Course(Protocol):
@@ -66,6 +83,7 @@ class Course(Protocol):
         rates: bounds on speeds by joints.
         base_speeds: (m,) bound on the speed of a base that thrusters move [m per edge].
         held_turns: (m,) bound on the angular velocity by wheels [rad per edge]; None without.
+        moving: the bodies that move.
     """
 
     problem: Problem
@@ -74,6 +92,7 @@ class Course(Protocol):
     rates: RateBounds
     base_speeds: Array
     held_turns: Array | None
+    moving: SceneBodies
 
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on edges (N,)."""
@@ -108,13 +127,19 @@ class Sampler:
         moved = np.linalg.norm(np.diff(self.positions, axis=0), axis=1)
         self.base_speeds = np.zeros(self.edges) if mode.floats else moved
         self.held_turns = None if mode.attitude_reacts else _held_turns(plan)
+        self._duration = self.problem.duration or 0.0
+        moving = self.problem.scene.bodies
+        self.moving = SceneBodies(moving, self._origin, self._duration)
 
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on edges (N,)."""
-        q = self._plan.at(np.minimum((edge + time) / self.edges, 1.0))
-        return samples_of(
-            self._plan, self._bodies, q, self._deviation(edge, time, q), self._steps[edge]
+        shares = np.minimum((edge + time) / self.edges, 1.0)
+        instants = times_at(shares, self._duration, self.problem.ramp)
+        q = self._plan.at(shares)
+        samples = samples_of(
+            self._plan, self._bodies, q, self._deviation(edge, time, q), self._steps[edge], instants
         )
+        return samples._replace(moving=self.moving.poses(instants))
 
     def _deviation(self, edge: IntArray, time: Array, q: Array) -> Array:
         """(N,) largest difference from straight lines between the corners."""
@@ -129,9 +154,14 @@ class Sampler:
 
 
 def samples_of(
-    motion: _OfProblem, bodies: Bodies, q: Array, deviation: Array, rates: Array
+    motion: _OfProblem,
+    bodies: Bodies,
+    q: Array,
+    deviation: Array,
+    rates: Array,
+    instants: Array = _NEVER,
 ) -> Samples:
-    """Samples of configurations.
+    """Samples of configurations, without bodies that move.
 
     Args:
         motion: a plan or a flight.
@@ -139,6 +169,7 @@ def samples_of(
         q: (N, nq) configurations.
         deviation: (N,) see `Samples`.
         rates: (N, nd) see `Samples`.
+        instants: (N,) see `Samples`.
     """
     poses = base_frame_poses(motion, bodies, q)
     placed = [poses[shape.link] @ shape.placement for shape in bodies.shapes]
@@ -155,6 +186,7 @@ def samples_of(
         centers_of_mass=places + np.einsum("nij,nj->ni", turns, momentum.centers),
         deviation=deviation,
         rates=rates,
+        instants=instants,
     )
 
 

@@ -132,9 +132,12 @@ class LatticePath:
         return objective_of(problem, straight, far)
 
 
-def path_of(plan: PlanData) -> LatticePath | FreePath:
+def path_of(plan: PlanData) -> LatticePath | FreePath | ProgressPath:
     """The path of a plan, on its lattice or without one."""
-    return FreePath(plan) if plan.problem.lattice is None else LatticePath(plan)
+    lattice = plan.problem.lattice
+    if lattice is not None and lattice.progress is not None:
+        return ProgressPath(plan)
+    return FreePath(plan) if lattice is None else LatticePath(plan)
 
 
 def _directions(plan: PlanData) -> Array:
@@ -182,7 +185,7 @@ class FreePath:
 
     def __init__(self, plan: PlanData) -> None:
         """Take a plan."""
-        self._plan = plan
+        self._plan, self._counted = plan, _INNER + 2
 
     def problems(self, bodies: Bodies, nodes: Array) -> list[str]:
         """What contradicts the window, the objective or the lower bound.
@@ -221,4 +224,52 @@ class FreePath:
             angle = 4.0 * np.arctan2(min(ends), max(ends))
             square += float((angle * problem.rotation_weight) ** 2)
         cap = np.inf if problem.clearance_cap is None else problem.clearance_cap
-        return objective_of(problem, float(np.sqrt(square)), np.full(_INNER + 2, cap))
+        return objective_of(problem, float(np.sqrt(square)), np.full(self._counted, cap))
+
+
+class ProgressPath(FreePath):
+    """The path of a plan on a lattice whose nodes have progress: waits and steps back too."""
+
+    def __init__(self, plan: PlanData) -> None:
+        """Take a plan."""
+        super().__init__(plan)
+        self._counted = len(plan.nodes)
+
+    def problems(self, bodies: Bodies, nodes: Array) -> list[str]:
+        """What contradicts the nodes, their steps, the objective or the optimum.
+
+        Args:
+            bodies: the robot, from its URDF.
+            nodes: (m + 1,) clearances measured at the plan's own nodes [m].
+        """
+        plan, problem, lattice = self._plan, self._plan.problem, self._plan.problem.given_lattice
+        progress = lattice.progress
+        assert progress is not None
+        indices = plan.nodes.reshape(len(plan.nodes), -1)
+        aside, along = indices[:, :-1], indices[:, -1]
+        spacing = np.array([getattr(lattice, name).spacing for name in lattice.axes])
+        share = along[:, None] / progress.steps
+        travel = problem.goal[:3] - problem.start[:3]
+        places = problem.start[:3] + share * travel + (aside * spacing) @ _directions(plan)
+        first, last = plan.motion.joint_values[[0, -1]]
+        joints = first + np.minimum(np.maximum(share, 0.0), 1.0) * (last - first)
+        allowed, found = _OFF_THE_AXES * max(1.0, float(np.linalg.norm(travel))), []
+        if np.abs(plan.motion.positions - places).max() > allowed:
+            found.append("the base positions are not those of the nodes")
+        if np.max(np.abs(plan.motion.joint_values - joints), initial=0.0) > AGREEMENT:
+            found.append("the joint values are not those of the nodes")
+        if np.any(aside[[0, -1]]) or along[0] != 0 or along[-1] != progress.steps:
+            found.append("the nodes do not begin at the start and end at the goal")
+        steps = np.abs(np.diff(indices, axis=0))
+        too_far = np.any(steps[:, -1] > progress.most) or np.any(steps[:, :-1] > progress.aside)
+        if (
+            too_far
+            or along.min() < -progress.before
+            or along.max() > progress.steps + progress.beyond
+        ):
+            found.append("the nodes are farther from one another or beyond than the lattice allows")
+        if not plan.lattice_objective == plan.objective == plan.optimum:
+            found.append(f"F is {plan.objective:.12g}, and not that of the lattice or its optimum")
+        if plan.optimum < self._least() * (1.0 - AGREEMENT):
+            found.append(f"the optimum is below F of any path, {self._least():.12g}")
+        return found

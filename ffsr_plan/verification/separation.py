@@ -1,6 +1,7 @@
 """Distances of placed shapes: to the obstacles along a motion, and to one another.
 
-Obstacles are spheres, shapes of other kinds, and the outside of zones that the robot stays in.
+Obstacles are spheres, shapes of other kinds, the outside of zones that the robot stays in, and
+bodies that move, each where it is at the time of a sample.
 
 The distances are computed by hand on purpose: python-fcl is the library from which Coal, the
 planner's, was derived, and would not be independent of it.
@@ -31,6 +32,7 @@ from ffsr_plan.verification.distances.solid_distance_kernels import (
 )
 from ffsr_plan.verification.distances.sphere_blocks import sphere_blocks
 from ffsr_plan.verification.motion_samples import Samples
+from ffsr_plan.verification.moving_bodies.body_distances import BodyDistances
 from ffsr_plan.verification.solids import Shape
 from ffsr_plan.verification.urdf_reading import Bodies
 
@@ -40,10 +42,16 @@ _SPARE = 1e-6  # [m] by which the lists of near obstacles are longer than they n
 
 
 class SampledDistances:
-    """Distances of a robot's parts: first each shape to the obstacles, then each pair of shapes.
+    """Distances of a robot's parts.
+
+    First come all shapes to the obstacles at rest, then all shapes to the first moving body, to the
+    second one and so on, and then the pairs of shapes.
 
     Attributes:
-        shapes: number of shapes that are measured against obstacles; 0 in an empty scene.
+        shapes: number of shapes that are measured against obstacles at rest; 0 if there are none.
+        outer: number of parts that are measured against obstacles, bodies included.
+        bodies: (parts,) number of the body from 1 on; 0 of other parts.
+        shape_of: (outer,) the shape of each of these parts.
         pairs: (p, 2) the shapes of each pair that must not touch.
         names: names of the links that each part belongs to.
         parts: number of parts.
@@ -59,20 +67,25 @@ class SampledDistances:
         """
         number = {shape: k for k, shape in enumerate(bodies.shapes)}
         pairs = bodies.pairs()
-        self.shapes = len(bodies.shapes) if len(scene) else 0
+        own, moving = len(bodies.shapes), len(scene.bodies)
+        self.shapes = own if len(scene) > moving else 0
+        self.outer = self.shapes + moving * own
         self.pairs: IntArray = np.array(
             [(number[a], number[b]) for a, b in pairs], dtype=np.int64
         ).reshape(-1, 2)
-        self.names: list[tuple[str, ...]] = [
-            (shape.link,) for shape in bodies.shapes[: self.shapes]
-        ]
+        order = np.arange(own)
+        self.shape_of: IntArray = np.append(order[: self.shapes], np.tile(order, moving))
+        self.names: list[tuple[str, ...]] = [(bodies.shapes[s].link,) for s in self.shape_of]
         self.names += [(a.link, b.link) for a, b in pairs]
         self.parts = len(self.names)
+        self.bodies: IntArray = np.zeros(self.parts, dtype=np.int64)
+        self.bodies[self.shapes : self.outer] = 1 + np.repeat(np.arange(moving), own)
         self._solids = arrays_of(bodies.shapes)
         self._scene = scene
         self._blocks = sphere_blocks(scene.centers - origin, scene.radii)
         self._obstacles, self._around = shape_arrays(scene.shapes, scene.growth, origin)
         self._zones = zone_arrays(scene.keep_in, scene.growth, origin)
+        self._moving = BodyDistances(scene.bodies, scene.growth, self._solids)
         self.stretches(np.zeros(0, dtype=np.int64), np.zeros((0, self.shapes, 3)), np.zeros(0))
 
     def middles(self, samples: Samples) -> Array:
@@ -118,19 +131,24 @@ class SampledDistances:
             (q,) signed distances to obstacles, and lower bounds on those of pairs [m].
         """
         found = np.empty(len(which))
-        outer = part < self.shapes
+        rest, inner = part < self.shapes, part >= self.outer
         asked = np.column_stack([which, part])
-        begin = stretch[outer] * self.shapes + part[outer]
-        found[outer] = self._to_obstacles(
+        begin = stretch[rest] * self.shapes + part[rest]
+        found[rest] = self._to_obstacles(
             samples,
-            asked[outer],
+            asked[rest],
             np.column_stack([self._starts[begin], self._starts[begin + 1]]),
             np.column_stack([self._shape_starts[begin], self._shape_starts[begin + 1]]),
         )
-        asked[:, 1] -= self.shapes
-        found[~outer] = pair_distances(
-            self._solids, asked[~outer], self.pairs, samples.turns, samples.places,
-            np.maximum(enough[~outer], _SHARP),
+        moving = ~rest & ~inner
+        if moving.any():
+            shape, body = self.shape_of[part[moving]], self.bodies[part[moving]] - 1
+            placed = self._placed(samples, np.column_stack([which[moving], shape]))
+            found[moving] = self._moving.at(placed[1], body, placed[2:], samples.moving)
+        asked[:, 1] -= self.outer
+        found[inner] = pair_distances(
+            self._solids, asked[inner], self.pairs, samples.turns, samples.places,
+            np.maximum(enough[inner], _SHARP),
         )  # fmt: skip
         return found
 
@@ -161,12 +179,14 @@ class SampledDistances:
         Args:
             samples: the samples.
             which: one of them.
-            part: the shape.
+            part: the shape, among the obstacles at rest or a moving body.
 
         Returns:
-            The name of a shape or zone, "an obstacle" for a sphere.
+            The name of a shape, zone or body, "an obstacle" for a sphere.
         """
         scene = self._scene
+        if body := self.body_name(part):
+            return body
         spheres, shapes = len(scene.radii), len(scene.shapes)
         row = np.array([[which, part]], dtype=np.int64)
 
@@ -189,15 +209,20 @@ class SampledDistances:
         nearest = int(np.argmin(np.concatenate([to_spheres, to_shapes, *to_zones])))
         return ShapeName("an obstacle") if nearest < spheres else scene.source_of(nearest)
 
+    def body_name(self, part: int) -> str:
+        """The moving body that a part is measured against, in words; empty where it is none."""
+        number, still = int(self.bodies[part]), len(self._scene) - len(self._scene.bodies)
+        return self._scene.source_of(still + number - 1) if number else ""
+
     def clearances(self, samples: Samples) -> Array:
         """(N,) least distances of any shape to an obstacle [m]; infinite without obstacles."""
-        count = len(samples.base_places)
+        count, outer = len(samples.base_places), self.outer
         order = np.arange(count)
         still = np.zeros((count, self.shapes))
         self.stretches(order, self.middles(samples), still)
-        which, part = np.repeat(order, self.shapes), np.tile(np.arange(self.shapes), count)
+        which, part = np.repeat(order, outer), np.tile(np.arange(outer), count)
         each = self.at(samples, which, part, which, np.zeros(len(which)))
-        return np.min(each.reshape(count, self.shapes), axis=1, initial=np.inf)
+        return np.min(each.reshape(count, outer), axis=1, initial=np.inf)
 
 
 def arrays_of(shapes: Sequence[Shape]) -> SolidArrays:

@@ -4,6 +4,10 @@ Between two samples no point of a shape travels farther than its speed bound tim
 them. To touch anything, it would have to cover the distance at one sample to get there, and that at
 the other to get back. So nothing is hidden where the sum of both distances exceeds that travel.
 Where it does not, a sample is taken in the middle.
+
+A body that moves and a shape that it touches cover these distances together, so that the travel of
+the body's points over the same time is added. Samples are even in the path; their times are those
+of the pace.
 """
 
 from __future__ import annotations
@@ -42,11 +46,15 @@ class Place(NamedTuple):
         value: a distance or a travel [m].
         edge: the edge.
         names: of the link, or the two links, concerned.
+        body: the moving body concerned, in words; empty where it is none.
+        time: when [s]; zero without a duration.
     """
 
     value: float
     edge: int
     names: tuple[str, ...]
+    body: str = ""
+    time: float = 0.0
 
 
 class Swept:
@@ -63,12 +71,14 @@ class Swept:
         drift: largest distance of the centre of mass from where it was at the start [m].
         deviation: largest distance of joints and base from straight lines between nodes [m, rad].
         excess_turn: largest rotation of the base between two samples beyond its bound [rad].
+        excess_ways: (B,) largest way or turn of each moving body beyond its bound [m, rad].
         samples: number of configurations.
         largest_step: longest way of any point of a shape between two samples [m].
         finite: whether all configurations are numbers.
     """
 
-    def __init__(self, edges: int) -> None:
+    def __init__(self, edges: int, bodies: int) -> None:
+        self.excess_ways = np.zeros(bodies)
         self.clearance: Place | None = None
         self.obstacle: str = ShapeName("an obstacle")
         self.separation: Place | None = None
@@ -81,7 +91,18 @@ class Swept:
 
 
 class _Intervals(NamedTuple):
-    """Intervals: edge, times, numbers of the samples at both ends, bound on the base's rotation."""
+    """Intervals.
+
+    Attributes:
+        edge: (n,) their edges.
+        begin: (n,) places on these at which they begin, from 0 to 1.
+        end: (n,) places at which they end.
+        first: (n,) numbers of the samples at their begins.
+        last: (n,) numbers of those at their ends.
+        turn: (n,) bound on the angular velocity of the base [rad per edge].
+        ways: (n, 1 + B) bounds on the travel of what is measured against: of the first, which is
+            at rest, zero, and then of each moving body [m].
+    """
 
     edge: IntArray
     begin: Array
@@ -89,9 +110,10 @@ class _Intervals(NamedTuple):
     first: IntArray
     last: IntArray
     turn: Array
+    ways: Array
 
     def travel(self, interval: IntArray, speeds: Array, reach: Array) -> Array:
-        """Travel of parts in intervals, by speeds and reaches of each [m]."""
+        """Travel of parts of the robot in intervals, by speeds and reaches of each [m]."""
         time = (self.end - self.begin)[interval]
         return np.asarray(time * (speeds + self.turn[interval] * reach) + ROUNDING)
 
@@ -141,15 +163,17 @@ class _Sweep:
         self._per_edge = samples
         self.course, problem = course, course.problem
         self.distances = SampledDistances(bodies, problem.obstacles, problem.start[:3])
-        self.found = Swept(course.edges)
+        self.found = Swept(course.edges, len(problem.scene.bodies))
         self._rates = rates = course.rates
         floats = problem.mode.floats
         speeds, reach = rates.afloat() if floats else (rates.shapes, rates.reach)
-        shapes, pairs = self.distances.shapes, self.distances.pairs
+        shape_of, pairs = self.distances.shape_of, self.distances.pairs
         self._speeds = np.hstack(
-            [speeds[:, :shapes] + course.base_speeds[:, None], rates.of_pairs(pairs)]
+            [speeds[:, shape_of] + course.base_speeds[:, None], rates.of_pairs(pairs)]
         )
-        self._reach = np.append(reach[:shapes], np.zeros(len(pairs)))
+        self._reach = np.append(reach[shape_of], np.zeros(len(pairs)))
+        spare = np.append(0.0, course.moving.roundings)[self.distances.bodies]
+        self._spare = ROUNDING + spare
         self._claim = course.clearance
         self._start = course.at(np.zeros(1, dtype=np.int64), np.zeros(1)).centers_of_mass[0]
         self._halvings = 0
@@ -182,7 +206,7 @@ class _Sweep:
         values = self._measured(samples, edge, *asked, beside.ravel())
         table = values.reshape(len(points), len(parts))
         nodes = points % self._per_edge == 0
-        outer = table[nodes][:, : self.distances.shapes]
+        outer = table[nodes][:, : self.distances.outer]
         self.found.nodes[points[nodes] // self._per_edge] = outer.min(axis=1, initial=np.inf)
         items = _Items(which, part, table[:-1].ravel(), table[1:].ravel())
         while self.found.finite and len(items.interval):
@@ -217,11 +241,23 @@ class _Sweep:
         turned = 2.0 * np.arcsin(np.minimum(sine, 1.0))
         excess = float(np.max(turned - np.minimum(turn * apart, np.pi), initial=0.0))
         self.found.excess_turn = max(self.found.excess_turn, excess)
-        return _Intervals(edge, begin, end, first, last, turn)
+        return _Intervals(edge, begin, end, first, last, turn, self._ways(first, last))
+
+    def _ways(self, first: IntArray, last: IntArray) -> Array:
+        """(n, 1 + B) see `_Intervals`; that bodies keep to it is noted too."""
+        bodies, found = self.course.moving, self.found
+        poses, instants = self._samples.moving, self._samples.instants
+        times = instants[first], np.maximum(instants[last], instants[first])
+        excess = bodies.excess(poses.at(first), poses.at(last), *times)
+        found.excess_ways = np.maximum(found.excess_ways, excess)
+        return np.column_stack([np.zeros(len(first)), bodies.ways(*times)])
 
     def _travel(self, intervals: _Intervals, interval: IntArray, part: IntArray) -> Array:
-        speeds = self._speeds[intervals.edge[interval], part]
-        return intervals.travel(interval, speeds, self._reach[part])
+        """Travel of parts, and of what they are measured against, in intervals [m]."""
+        own = intervals.travel(
+            interval, self._speeds[intervals.edge[interval], part], self._reach[part]
+        )
+        return np.asarray(own + intervals.ways[interval, self.distances.bodies[part]])
 
     def _measured(
         self, samples: Samples, edge: IntArray, which: IntArray, part: IntArray, enough: Array
@@ -229,11 +265,12 @@ class _Sweep:
         """Distances; the least ones are noted."""
         stretch = edge[which] - self._first_edge
         values = self.distances.at(samples, which, part, stretch, enough)
-        outer, found = part < self.distances.shapes, self.found
+        outer, found = part < self.distances.outer, self.found
         if outer.any():
             k = int(np.flatnonzero(outer)[np.argmin(values[outer])])
             if found.clearance is None or values[k] < found.clearance.value:
-                found.clearance = self._place(values[k], edge[which[k]], part[k])
+                time = samples.instants[which[k]]
+                found.clearance = self._place(values[k], edge[which[k]], part[k], time)
                 self._nearest = samples, int(which[k]), int(part[k])
         inner = np.flatnonzero(~outer)
         if found.separation is not None:
@@ -249,30 +286,35 @@ class _Sweep:
             exact = self.distances.at(samples, which[some], part[some], stretch[some], far)
             k = int(np.argmin(exact))
             if found.separation is None or exact[k] < found.separation.value:
-                found.separation = self._place(exact[k], edge[which[some[k]]], part[some[k]])
+                row = which[some[k]]
+                time = samples.instants[row]
+                found.separation = self._place(exact[k], edge[row], part[some[k]], time)
         return values
 
-    def _place(self, value: float, edge: int, part: int) -> Place:
-        return Place(float(value), int(edge), self.distances.names[part])
+    def _place(self, value: float, edge: int, part: int, time: float) -> Place:
+        names, body = self.distances.names[part], self.distances.body_name(part)
+        return Place(float(value), int(edge), names, body, float(time))
 
     def _judge(self, intervals: _Intervals, items: _Items, travel: Array) -> Flags:
         """Which items have to be halved; the others are noted."""
-        found, outer = self.found, items.part < self.distances.shapes
+        found, outer = self.found, items.part < self.distances.outer
         bound = 0.5 * (items.at_first + items.at_last - travel)
         nearest = found.clearance.value if found.clearance is not None else np.inf
         held = nearest >= self._claim - ROUNDING  # otherwise there is nothing to confirm
         enough = np.where(outer, max(self._claim - CONFIRMED, 0.0) if held else 0.0, 0.0)
         touching = np.minimum(items.at_first, items.at_last) <= 0.0
         is_open = ~((bound > 0.0) & (bound >= enough)) & ~touching
-        ends_here = is_open & (travel - ROUNDING <= FINEST)
+        ends_here = is_open & (travel - self._spare[items.part] <= FINEST)
         if self._halvings > MOST_SAMPLES:
             ends_here = is_open
         for k, flags in enumerate((outer, ~outer)):
             rest = np.flatnonzero(ends_here & flags & (bound <= 0.0))
             if len(rest):
                 worst = rest[np.argmax(travel[rest])]
-                edge = intervals.edge[items.interval[worst]]
-                place = self._place(travel[worst] - ROUNDING, edge, items.part[worst])
+                interval, part = items.interval[worst], items.part[worst]
+                edge, first = intervals.edge[interval], intervals.first[interval]
+                time = self._samples.instants[first]
+                place = self._place(travel[worst] - self._spare[part], edge, part, time)
                 found.hidden[k] = max(filter(None, (found.hidden[k], place)))
         is_open &= ~ends_here
         done = ~is_open

@@ -6,6 +6,9 @@ is sampled as it is; velocities are finite differences of link poses. The plan's
 between them (`sweep`); the bound on the base's rotation behind that rests on the conservation of
 momentum, which is checked at three stations on every edge, and at every sample.
 
+Bodies that move are where their motions have them, by code of its own (`moving_bodies`), at the
+times that the problem's duration and ramp give to places on the path.
+
 If a cylinder or mesh is replaced by another solid (`SpaceRobot.replacements`), all distances are to
 that solid, as in the plan, and the verification checks that it contains the original: the cylinder
 of the URDF, or the corners of the mesh's hull that the plan stores. So the true robot is at least
@@ -20,6 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ffsr_plan.bodies.pose_function import PoseFunction
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import whole_number
 from ffsr_plan.core.contacts import encounter
@@ -28,7 +32,7 @@ from ffsr_plan.verification.momentum_residual import momentum_residual, wheel_mo
 from ffsr_plan.verification.motion_samples import Sampler
 from ffsr_plan.verification.recomputed_objective import AGREEMENT, Recomputed, recompute
 from ffsr_plan.verification.recomputed_path import FreePath, LatticePath, path_of
-from ffsr_plan.verification.sweep import CONFIRMED, OnProgress, Swept, sweep
+from ffsr_plan.verification.sweep import CONFIRMED, OnProgress, Place, Swept, sweep
 from ffsr_plan.verification.urdf_reading import Bodies
 
 if TYPE_CHECKING:
@@ -72,6 +76,10 @@ class Report:
         largest_step: longest way of any point between two samples [m].
         largest_gap: the same for samples between which a contact may be hidden; 0 where there are
             none. Such a plan is not ok.
+        nearest_body: the moving body from which the least clearance was measured, in words; None
+            where that is an obstacle at rest, or none.
+        nearest_time: when the least clearance was measured [s]; None without obstacles, or without
+            a duration.
     """
 
     ok: bool
@@ -89,6 +97,8 @@ class Report:
     samples: int
     largest_step: float
     largest_gap: float
+    nearest_body: str | None
+    nearest_time: float | None
 
 
 def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | None = None) -> Report:
@@ -104,13 +114,10 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         The measured values, the problems found, and what was not checked.
 
     Raises:
-        InvalidInput: `samples` is not a positive integer, or too large.
+        InvalidInput: `samples` is not allowed, or a function of a body's motion tells no pose.
+        IntegrationError: a tumble of a body that cannot be integrated accurately.
     """
-    most = max(1, _MOST_EVEN_SAMPLES // plan.edges)
-    samples = whole_number("samples", samples, at_least=1, at_most=most)
-    if on_progress is not None and not callable(on_progress):
-        raise InvalidInput("on_progress", on_progress, "a function, or None")
-    problem = plan.problem
+    samples, problem = _checked(plan, samples, on_progress), plan.problem
     bodies = Bodies(problem.robot.urdf, problem.robot.srdf, problem.robot.replacements)
     swept = sweep(Sampler(plan, bodies), bodies, samples, on_progress)
     held = problem.mode.has_wheels
@@ -122,15 +129,16 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         contradictions = path.problems(bodies, swept.nodes) if swept.finite else []
     problems = (
         *_bad_input(plan, bodies),
-        *collisions(plan.certificate.least_clearance, swept),
+        *collisions(plan.certificate.least_clearance, swept, timed=problem.duration is not None),
         *other_motion(swept),
+        *_other_bodies(problem, swept),
         *_broken_momentum(residual, wheel_error, drift),
         *_ends_and_limits(plan),
         *_other_costs(plan, costs),
         *contradictions,
     )
-    least = swept.clearance.value if swept.clearance else np.inf
-    gap = swept.separation.value if swept.separation else np.inf
+    places = swept.clearance, swept.separation
+    least, gap = (place.value if place else np.inf for place in places)
     errors = (residual, drift, wheel_error, costs.clearance_error, costs.objective_error)
     if not swept.finite or any(v is not None and np.isnan(v) for v in (least, gap, *errors)):
         problems += ("some of the figures are not numbers",)
@@ -150,7 +158,24 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         samples=swept.samples,
         largest_step=float(swept.largest_step),
         largest_gap=max((place.value for place in swept.hidden if place), default=0.0),
+        nearest_body=(swept.clearance.body or None) if swept.clearance else None,
+        nearest_time=_time_of(problem, swept),
     )
+
+
+def _checked(plan: PlanData, samples: int, on_progress: OnProgress | None) -> int:
+    """The number of samples, after a check of the arguments."""
+    if on_progress is not None and not callable(on_progress):
+        raise InvalidInput("on_progress", on_progress, "a function, or None")
+    most = max(1, _MOST_EVEN_SAMPLES // plan.edges)
+    return whole_number("samples", samples, at_least=1, at_most=most)
+
+
+def _time_of(problem: Problem, swept: Swept) -> float | None:
+    """When the least clearance was measured [s]."""
+    if swept.clearance is None or problem.duration is None:
+        return None
+    return swept.clearance.time
 
 
 def _not_checked(plan: PlanData, path: LatticePath | FreePath, bodies: Bodies) -> Iterator[str]:
@@ -163,6 +188,9 @@ def _not_checked(plan: PlanData, path: LatticePath | FreePath, bodies: Bodies) -
     yield "whether the search was interrupted, and its seconds"
     if plan.problem.scene.excess > 0.0:
         yield "that the spheres cover what they stand for, and by how much they exceed it"
+    for body in plan.problem.scene.bodies:
+        if isinstance(body.motion, PoseFunction):
+            yield f"that {body.word} '{body.name}' is no faster than stated between two samples"
     if path.bent:
         yield "F on the lattice, from which the joints were moved to reach the goal's attitude"
     elif path.moved:
@@ -195,7 +223,9 @@ def _bad_input(plan: PlanData, bodies: Bodies) -> list[str]:
     return problems
 
 
-def collisions(proven: float, swept: Swept, motion: str = "plan", part: str = "edge") -> list[str]:
+def collisions(
+    proven: float, swept: Swept, motion: str = "plan", part: str = "edge", *, timed: bool = False
+) -> list[str]:
     """What is wrong with distances along a motion.
 
     Args:
@@ -203,16 +233,20 @@ def collisions(proven: float, swept: Swept, motion: str = "plan", part: str = "e
         swept: the distances found.
         motion: what it is, in words.
         part: what one of its edges is, in words.
+        timed: whether the places have times.
     """
+
+    def where(place: Place) -> str:
+        return f"on {part} {place.edge}" + (f" at {place.time:.6g} s" if timed else "")
+
     problems, least = [], np.inf
-    if swept.clearance is not None:
-        least, edge, names = swept.clearance
+    if (nearest := swept.clearance) is not None:
+        least = nearest.value
         if least <= 0.0:
             what = encounter(least, None, swept.obstacle)
-            problems.append(f"link '{names[0]}' {what} on {part} {edge}")
-    if swept.separation is not None and swept.separation.value <= 0.0:
-        _, edge, names = swept.separation
-        problems.append(f"two links touch on {part} {edge}: '{names[0]}' and '{names[1]}'")
+            problems.append(f"link '{nearest.names[0]}' {what} {where(nearest)}")
+    if (pair := swept.separation) is not None and pair.value <= 0.0:
+        problems.append(f"two links touch {where(pair)}: '{pair.names[0]}' and '{pair.names[1]}'")
     if proven > least + AGREEMENT:
         measured = f"{least:.6g} m" if least > 0.0 else "none"
         stated = f"the {motion}'s proven clearance is {proven:.6g} m"
@@ -221,9 +255,9 @@ def collisions(proven: float, swept: Swept, motion: str = "plan", part: str = "e
         problems.append(f"the {motion}'s proven clearance of {proven:.6g} m is not confirmed")
     for place, other in zip(swept.hidden, ("an obstacle", "another link"), strict=True):
         if place is not None:
-            other = f"link '{place.names[1]}'" if len(place.names) > 1 else other
+            other = f"link '{place.names[1]}'" if len(place.names) > 1 else place.body or other
             problems.append(
-                f"link '{place.names[0]}' may touch {other} on {part} {place.edge} between two "
+                f"link '{place.names[0]}' may touch {other} {where(place)} between two "
                 f"samples {place.value:.2g} m apart"
             )
     return problems
@@ -241,6 +275,15 @@ def other_motion(swept: Swept) -> list[str]:
             f"the base turns by {swept.excess_turn:.3g} rad more between two samples than it can"
         )
     return problems
+
+
+def _other_bodies(problem: Problem, swept: Swept) -> Iterator[str]:
+    """Bodies that move farther than the bounds on their travel say, which functions may do."""
+    still = len(problem.scene) - len(problem.scene.bodies)
+    for k, excess in enumerate(swept.excess_ways):
+        if excess > AGREEMENT:
+            name = problem.scene.source_of(still + k)
+            yield f"{name} moves by {excess:.3g} m or rad more between two samples than it can"
 
 
 def _broken_momentum(

@@ -105,7 +105,7 @@ def test_every_planner_can_be_chosen_and_refinement_switched_off(run):
         result = run("plan", "quick.toml", "--planner", name, "--no-refine", "--out", name)
         assert result.exit_code == 0, result.output
         assert "gap" in result.stdout
-    result = run("plan", "quick.toml", "--colonies", 2, "--workers", 2, "--time-limit", 5)
+    result = run("plan", "quick.toml", "--colonies", 2, "--workers", 2, "--time-limit", 20)
     assert result.exit_code == 0
 
 

@@ -89,6 +89,40 @@ def test_what_touches_exactly_is_to_keep_the_tolerance(chain, depth):
     assert "out by more than 0.1 m" in text
 
 
+@pytest.mark.parametrize("round_body", [fp.Cylinder(2.0, 6.0), fp.Ellipsoid([2.0, 2.0, 3.0])])
+def test_what_is_inside_a_round_body_is_said_first_and_without_a_depth(chain, round_body):
+    scene = fp.Scene([[0.0, 0.62, 0.0]], [0.2], shapes=[round_body])
+    found = contacts(chain, scene, chain.configuration())
+    assert found[0].obstacle == 1
+    assert {c.obstacle for c in found} == {0, 1}
+    error = start_in_collision(chain, scene, chain.configuration())
+    assert error.obstacle == 1
+    assert f"link 'base' is inside {round_body.word} (shapes.0)" in str(error)
+    assert f"move the base or the joints out of {round_body.word} (shapes.0)" in str(error)
+    assert fp.clearance(chain, scene, chain.configuration()).obstacle == 0
+
+
+def test_a_robot_outside_of_a_zone_is_to_be_moved_into_it(chain):
+    zone = fp.Scene(keep_in=[fp.Box([6, 4, 4], [4.0, 0, 0], name="hall")])
+    text = str(start_in_collision(chain, zone, chain.configuration()))
+    assert "move the base or the joints into box 'hall' by more than 1.5 m" in text
+    assert " out " not in text
+
+
+def test_zones_without_a_common_point_are_told(chain):
+    zones = [fp.Box([2, 2, 2]), fp.Ball(1.0, [3.0, 0, 0])]
+    text = str(start_in_collision(chain, fp.Scene(keep_in=zones), chain.configuration()))
+    assert "zones that overlap: no point is in all of them, they miss it by 0.5 m" in text
+
+
+@pytest.mark.parametrize("zone", [fp.Box([2.5, 5, 5]), fp.Ball(1.25)])
+def test_a_zone_smaller_than_the_robot_is_told(chain, zone):
+    text = str(start_in_collision(chain, fp.Scene(keep_in=[zone]), chain.configuration()))
+    assert f"larger zones than {zone.word} (keep_in.0)" in text
+    assert "at least 1.2 m too wide" in text  # it is 3.7 m long
+    assert " out by" not in text
+
+
 def test_links_that_touch_exactly_are_shown_so():
     pairs = [SelfCollision("a", "b", 0.1), SelfCollision("b", "c", 5e-17)]
     robot = fp.load_robot("point")

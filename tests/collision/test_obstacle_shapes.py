@@ -11,8 +11,8 @@ from ffsr_plan.collision.coal_measures import CoalMeasures, solid_of
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.near_pairs import NearPairs
 from ffsr_plan.collision.shape_placements import shape_placements
-from ffsr_plan.scene.keep_in_zones import HalfSpace
-from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Capsule, Cylinder
 from tests.helpers.obstacle_shapes import KINDS, random_shape, support
 from tests.helpers.single_link_robots import one_link
 from tests.helpers.urdf_builders import box, capsule, cylinder

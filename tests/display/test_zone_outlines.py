@@ -16,7 +16,7 @@ from ffsr_plan.display.scenes.zone_outlines import (
     patch,
     sides_of,
 )
-from ffsr_plan.scene.keep_in_zones import planes_of
+from ffsr_plan.scene.shapes.keep_in_zones import planes_of
 
 LOW, HIGH = np.array([-1.0, -2.0, -0.5]), np.array([5.0, 2.0, 0.5])
 PICTURE = np.array([[-4.0, -3.0], [6.0, -3.0], [6.0, 3.0], [-4.0, 3.0]])

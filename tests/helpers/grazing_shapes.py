@@ -14,8 +14,8 @@ import ffsr_plan as fp
 from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
-from ffsr_plan.scene.keep_in_zones import HalfSpace
-from ffsr_plan.scene.obstacle_shapes import Ball, Box
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box
 from ffsr_plan.verification.motion_samples import samples_of
 from ffsr_plan.verification.separation import SampledDistances
 from ffsr_plan.verification.urdf_reading import Bodies

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
 
 KINDS = ("box", "ball", "capsule", "cylinder", "ellipsoid", "hull")
 

@@ -15,7 +15,7 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 import ffsr_plan as fp
-from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
 from ffsr_plan.verification import solids
 from ffsr_plan.verification.motion_samples import Samples
 from ffsr_plan.verification.separation import SampledDistances

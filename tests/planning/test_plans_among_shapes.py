@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.scene.keep_in_zones import HalfSpace
-from ffsr_plan.scene.obstacle_shapes import Box, Capsule, Cylinder, Ellipsoid
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+from ffsr_plan.scene.shapes.obstacle_shapes import Box, Capsule, Cylinder, Ellipsoid
 
 BUS = [
     Box((1.2, 1.2, 1.2), (4.0, 0.0, 0.0), name="bus"),
@@ -80,3 +80,16 @@ def test_a_zone_that_cannot_be_left_blocks_a_goal_outside(robot):
     )
     with pytest.raises(fp.GoalInCollision, match=r"outside of box \(keep_in.0\)"):
         fp.plan(outside)
+
+
+@pytest.mark.parametrize(
+    "large", [Box((40.0, 25.0, 10.0), (0.0, 16.0, 0.0)), Cylinder(200.0, 400.0, (0.0, 204.0, 0.0))]
+)
+def test_correct_plans_beside_large_bodies_verify(large):
+    """Coal's distances to them are too small by a share of their size."""
+    arm = fp.load_robot("satellite_ur5")
+    goal = arm.configuration((5.0, 0.0, 0.0))
+    given = fp.Problem(arm, fp.Scene(shapes=[large]), arm.neutral(), goal)
+    report = fp.plan(given, until="first").verify()
+    assert report.ok, report.problems
+    assert report.clearance_error > 1e-9

@@ -63,7 +63,7 @@ def test_verdicts_are_those_of_coal_alone(seed):
     if query.empty:
         return
     rounding = 1e-9 + 1e-7
-    for layer, verdict in enumerate(prover.self_verdicts()):
+    for layer, verdict in enumerate(prover.links.verdicts()):
         edge = SelfCollisionEdge(query, motion, prover._travel, layer, every, rounding)
         alone = certify(edge, (edge.clearance(0.0), edge.clearance(1.0)), TOLERANCE)
         assert verdict.free == alone.free

@@ -6,7 +6,7 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
-from ffsr_plan.scene.obstacle_shapes import Box
+from ffsr_plan.scene.shapes.obstacle_shapes import Box
 from tests.helpers.grazing_shapes import ZONES, Counts, look_at
 from tests.helpers.obstacle_shapes import KINDS
 from tests.helpers.single_link_robots import one_link

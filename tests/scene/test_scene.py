@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from tests.helpers.obstacle_shapes import KINDS, random_shape, support
 
 
 def test_a_sum_holds_the_spheres_of_both_scenes():
@@ -20,6 +21,21 @@ def test_a_scene_is_printed_as_number_and_extent():
     assert "x -1 to 5 m" in scene._repr_html_()
     assert "empty" in fp.Scene()._repr_html_()
     assert "0.5 m" in fp.Scene([[0, 0, 0]], [1.0], 0.5)._repr_html_()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_bounds_are_how_far_shapes_reach_along_the_axes(kind):
+    shapes = [random_shape(np.random.default_rng(k), kind, -np.ones(3), np.ones(3)) for k in (1, 2)]
+    low, high = fp.Scene(shapes=shapes, growth=0.25).bounds()
+    for k, axis in enumerate(np.eye(3)):
+        assert high[k] == pytest.approx(0.25 + max(support(s, axis[None])[0] for s in shapes))
+        assert low[k] == pytest.approx(-0.25 - max(support(s, -axis[None])[0] for s in shapes))
+
+
+def test_the_extent_of_a_panel_is_as_thin_as_it_is():
+    scene = fp.Scene([[0, 0, 3]], [0.5], shapes=[fp.Box([4, 0.02, 1])])
+    assert "x -2 to 2 m, y -0.5 to 0.5 m, z -0.5 to 3.5 m" in repr(scene)
+    assert "y -0.01 to 0.01 m" in fp.Scene(shapes=scene.shapes)._repr_html_()
 
 
 def test_spheres_keep_what_they_come_from(tmp_path):

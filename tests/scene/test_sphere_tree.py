@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 import ffsr_plan as fp
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import shape_placements
-from ffsr_plan.scene import sphere_tree as module
-from ffsr_plan.scene.sphere_tree import sphere_tree
+from ffsr_plan.scene.shapes import sphere_tree as module
+from ffsr_plan.scene.shapes.sphere_tree import sphere_tree
 from tests.helpers.closed_forms import clearances, shape_distance
 from tests.helpers.urdf_builders import capsule, cylinder, random_configuration, random_robot
 

@@ -5,7 +5,7 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.robots.loading import robot_from_urdf
-from ffsr_plan.scene.obstacle_shapes import Box, Cylinder
+from ffsr_plan.scene.shapes.obstacle_shapes import Box, Cylinder
 from tests.helpers.single_link_robots import MASS, one_link
 from tests.helpers.urdf_builders import box, cylinder, link, urdf
 

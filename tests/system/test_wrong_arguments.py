@@ -49,6 +49,7 @@ def calls(plan, tmp_path_factory):
     placed = {"position": [0, 0, 0], "attitude": [0, 0, 0], "name": "s"}
     trimesh.creation.box((1.0, 1.0, 1.0)).export(folder / "box.stl")
     scene.to_csv(folder / "s.csv")
+    (folder / "track.csv").write_text("t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n")
     plan.save(folder / "plan.json")
     np.save(folder / "s.npy", [[0.0, 0.0, 0.0, 1.0]])
 
@@ -57,7 +58,9 @@ def calls(plan, tmp_path_factory):
 
     settings = {
         fp.Axis: {"half_count": 1, "spacing": 0.1},
-        fp.Lattice: {"divisions": 3, "lateral": None, "normal": None, "postures": ()},
+        fp.Lattice: {"divisions": 3, "lateral": None, "normal": None, "postures": (),
+                     "progress": None},
+        fp.Progress: {"steps": 3, "most": 1, "aside": 1, "before": 0, "beyond": 0},
         fp.PostureAxis: {"joints": {"left_1": 1.0}, "half_count": 1, "spacing": 0.1},
         fp.PostureTarget: {"towards": "stowed", "levels": 2},
         fp.PostureAxis.towards: {"posture": "stowed", "levels": 2},
@@ -76,7 +79,16 @@ def calls(plan, tmp_path_factory):
         fp.Mount: {"arm": "ur3", "position": [0, 0, 0], "attitude": [0, 0, 0], "prefix": "a_",
                    "locked": {}, "srdf": None},
         fp.Scene: {"centers": [[0, 0, 0]], "radii": [1.0], "excess": 0.0, "sources": (),
-                   "shapes": (), "keep_in": (), "growth": 0.0},
+                   "shapes": (), "keep_in": (), "growth": 0.0, "bodies": ()},
+        fp.MovingBody: {"shapes": [fp.Ball(1.0)], "motion": fp.Drift(), **placed},
+        fp.Drift: {"velocity": [0, 0, 0]},
+        fp.Spin: {"rate": [0, 0, 1], "velocity": [0, 0, 0]},
+        fp.Tumble: {"inertia": [1, 1, 1], "rate": [0, 0, 1], "velocity": [0, 0, 0],
+                    "known_until": 10.0},
+        fp.Track: {"times": [0, 1], "positions": np.zeros((2, 3)),
+                   "attitudes": [[0, 0, 0, 1]] * 2},
+        fp.PoseFunction: {"function": lambda t: (np.zeros(3), [0, 0, 0, 1]), "speed": 1.0,
+                          "turn_rate": 0.0, "known_until": 9.0},
         fp.Box: {"size": [1, 1, 1], **placed},
         fp.Ball: {"radius": 1.0, "position": [0, 0, 0], "name": "b"},
         fp.Capsule: {"radius": 1.0, "length": 1.0, **placed},
@@ -91,6 +103,7 @@ def calls(plan, tmp_path_factory):
         fp.Scene.from_numpy: {"path": folder / "s.npy"},
         fp.Scene.from_mesh: {"mesh": _Box(), "excess": 0.3, "scale": 1.0, "position": [0, 0, 0],
                              "attitude": [0, 0, 0], "inside": True},
+        fp.Track.from_csv: {"path": folder / "track.csv"},
         fp.Hull.from_mesh: {"mesh": folder / "box.stl", "scale": 1.0, **placed},
         fp.Scene.from_urdf: {"source": "point", "position": [0, 0, 0], "attitude": [0, 0, 0],
                              "joints": None, "name": "t"},
@@ -210,7 +223,7 @@ def test_the_interface_is_covered(calls):
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
         "SearchResult", "SmoothCurve", "SmoothFlight", "SmoothPlan", "Solution", "SpaceRobot",
-        "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum",
+        "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum", "Pace", "Poses",
     }  # fmt: skip
     without_arguments = {"arm_names", "robot_names", "robot_summaries", "warm_up"}  # or callbacks
     errors = {name for name in fp.__all__ if isinstance(getattr(fp, name), type)

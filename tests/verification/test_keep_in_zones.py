@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import ffsr_plan as fp
-from ffsr_plan.scene.keep_in_zones import HalfSpace
-from ffsr_plan.scene.obstacle_shapes import Ball, Box
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box
 from tests.helpers.placed_shapes import SOLIDS, measured, moved, quaternion, turn_of
 
 EXACT = 1e-12  # [m]

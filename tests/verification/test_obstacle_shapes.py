@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import ffsr_plan as fp
-from ffsr_plan.scene.obstacle_shapes import Ball, Box, Cylinder, Ellipsoid
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Cylinder, Ellipsoid
 from ffsr_plan.verification import solids
 from ffsr_plan.verification.separation import SampledDistances
 from tests.helpers.placed_shapes import (

@@ -7,8 +7,8 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.core.arrays import frozen
-from ffsr_plan.scene.keep_in_zones import HalfSpace
-from ffsr_plan.scene.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Capsule, Cylinder, Ellipsoid, Hull
 from ffsr_plan.verification.flights.verify_flight import verify_flight
 from ffsr_plan.verification.recomputed_objective import objective_of, station_clearances
 from ffsr_plan.verification.urdf_reading import Bodies

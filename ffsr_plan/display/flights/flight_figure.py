@@ -10,6 +10,7 @@ import numpy as np
 from ffsr_plan.core.checks import unknown_name, whole_number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display import figure_style
+from ffsr_plan.display.body_drawing import chosen_rows, draw_bodies, write_times
 from ffsr_plan.display.figure_style import SERIES, Named, Style
 from ffsr_plan.display.flights.flight_samples import (
     FlightSamples,
@@ -25,6 +26,7 @@ from ffsr_plan.display.path_drawing import (
     mark_ends,
     name_directions,
 )
+from ffsr_plan.display.scenes.body_tracks import body_tracks
 from ffsr_plan.display.scenes.picture_data import Quantity, drawn_solid
 from ffsr_plan.display.scenes.projection import view_axes
 from ffsr_plan.display.scenes.shape_outlines import points_of_extent
@@ -41,6 +43,7 @@ _WIDTH, _PANEL_HEIGHT = 8.0, 1.25  # [inches]
 _SHARE = 0.72  # of the width that axes have beside their legends
 _MOST_NAMED = 8  # curves of a panel that the legend names one by one
 _LETTERS = 20  # of a line in the legend beside the path
+_LETTERS_OF_BODIES = 14  # so that no line is broken at a time
 _FAR = 2.5  # peaks above which a limit is not drawn but written
 _LINES = ("-", "--", ":")
 _MARK = "#c9ccd1"  # of the times of silhouettes
@@ -59,7 +62,8 @@ def flight_figure(
     Args:
         flown: the flight and its problem.
         axes: matplotlib axes by what is to be drawn on them, `path` or a name in `QUANTITIES`;
-            by default those of a new figure with the path and all that changes but the clearance.
+            by default those of a new figure with the path and all that changes, the clearance only
+            where bodies move.
         silhouettes: of the robot, at equal steps of time.
         colours: matplotlib colours by name.
         labels: texts in the legends by name.
@@ -78,7 +82,8 @@ def flight_figure(
     style = Style(_own_style(shown), colours, labels)
     rows = np.searchsorted(times, marks).tolist()
     if axes is None:
-        figure, axes = _new_figure(flown, samples, [n for n in shown if n != "clearance"])
+        hidden = () if flown.problem.scene.bodies else ("clearance",)
+        figure, axes = _new_figure(flown, samples, [n for n in shown if n not in hidden])
     else:
         figure = _figure_of(axes, shown)
     for name, ax in axes.items():
@@ -97,6 +102,7 @@ def _own_style(shown: Mapping[str, Quantity]) -> dict[str, tuple[str, str]]:
         "goal": (figure_style.GOAL, "goal"),
         "robot": (figure_style.ROBOT, ""),
         "obstacles": (figure_style.OBSTACLE, ""),
+        "bodies": (figure_style.MOVING, figure_style.MOVING_LABEL),
         "zones": (figure_style.ZONE, ZONE),
         "rests": (figure_style.ROBOT, "rests"),
         "limit": (figure_style.CONTACT, "limit"),
@@ -172,20 +178,12 @@ def _draw_path(
         look: dict[str, Any] = {"ms": 3.5, "zorder": 7, "color": style.colour("rests")}
         ax.plot(*at_rest.T, "o", label=style.label("rests"), **look)
     mark_ends(ax, style)
-    for row in rows:
-        ax.annotate(
-            f"{samples.times[row]:.3g} s",
-            tuple(track[row]),
-            (0, 7),
-            textcoords="offset points",
-            ha="center",
-            fontsize=8,
-            zorder=8,
-            bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.75},
-        )
+    bodies = body_tracks(problem.scene, samples.times)
+    written = write_times(ax, track, rows, samples.times)
+    draw_bodies(ax, bodies, chosen_rows(rows), view[:2], style, written, _LETTERS_OF_BODIES)
     name_directions(ax, problem, "path", leaves_plane=False)
     draw_named_zones(ax, problem, view, style, _LETTERS)
-    if problem.scene.keep_in:
+    if problem.scene.keep_in or bodies:
         ax.set_anchor("W")  # leaves the room to the legend
     ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
 

@@ -114,12 +114,13 @@ def _scene(
     pace = "true time" if speed == 1.0 else f"{speed:g} × true time"
     return MovingScene(
         problem=flown.problem,
-        title=f"{flown.heading()}, {pace}",
+        title=f"{flown.heading()}, {pace}{flown.not_proven()}",
         frames=samples.frames,
         axes=axes,
         robot=robot_outlines(samples.frames, axes, shapes),
         curves=curves,
         words=_words(flown, samples),
+        times=samples.times,
     )
 
 

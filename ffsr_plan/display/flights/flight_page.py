@@ -11,15 +11,13 @@ from ffsr_plan.display.flights.quantities import quantities
 from ffsr_plan.display.motion_page import (
     BYTES_PER_POSE,
     LARGEST_TURN,
-    SPEEDS,
-    Axis,
     PlayedMotion,
     motion_page,
+    time_axis,
 )
 from ffsr_plan.display.scenes.projection import SHAPES
 
 _FRAMES, _MOST_FRAMES = 600, 4000
-_PATIENCE = 60.0  # [s] in which a flight is played at first
 
 
 def flight_page(
@@ -44,17 +42,17 @@ def flight_page(
     size = {"frames": count, "joints": problem.robot.nd + 1}
     check_memory("page", size, BYTES_PER_POSE, "a robot with fewer joints")
     samples = sample_flight(flown, np.linspace(0.0, duration, count))
-    speed = next((s for s in SPEEDS if s >= 1 and duration <= s * _PATIENCE), SPEEDS[-1])
     played = PlayedMotion(
         problem=problem,
         frames=samples.frames,
-        axis=Axis("t", "s", "time [s]", duration, duration, speed),
+        axis=time_axis(duration),
         charts=quantities(flown, samples),
         bound="limit",
         title=title or flown.heading(),
         subtitle=flown.summary(),
         playing=playing,
         shapes=one_of("shapes", shapes, SHAPES),
+        times=samples.times,
     )
     return motion_page(played)
 

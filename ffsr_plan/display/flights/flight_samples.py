@@ -7,10 +7,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.rotations import rotation_vector
 from ffsr_plan.display.scenes.picture_data import MotionFrames, motion_frames
+from ffsr_plan.display.scenes.timed_clearances import clearances
 from ffsr_plan.dynamics.inverse_dynamics import States
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.trajectory.flight_limits import FlightLimits
@@ -63,12 +63,17 @@ class FlownProblem(NamedTuple):
         return f"{self.problem.robot.name}, {self.problem.mode}"
 
     def summary(self) -> str:
-        """Duration and delta-v."""
+        """Duration and delta-v; where bodies move, that nothing is proven past them."""
         words = f"{self.flight.duration:.4g} s"
         if self.problem.mode.has_thrusters:
             words += f", Δv {self.flight.delta_v:.3g} m/s"
         rests = len(self.flight.rests)
-        return words + (f", {rests} rests" if rests > 1 else ", 1 rest" if rests else "")
+        words += f", {rests} rests" if rests > 1 else ", 1 rest" if rests else ""
+        return words + self.not_proven()
+
+    def not_proven(self) -> str:
+        """What is to be said where bodies move, past which the flight's own pace is not proven."""
+        return ", not proven past moving bodies" if self.problem.scene.bodies else ""
 
 
 class FlightSamples(NamedTuple):
@@ -82,7 +87,8 @@ class FlightSamples(NamedTuple):
         thrust: (N,) force of the thrusters over the robot's mass, pulses included [m/s^2].
         rotation: (N, 3) rotation vector of the base since the start, axes of the base at the start
             [rad]; continuous, so that it may be longer than half a turn.
-        clearances: (N,) least distance of a link to an obstacle [m]; infinite without obstacles.
+        clearances: (N,) least distance of a link to an obstacle, to bodies where they are at the
+            time [m]; infinite without obstacles.
     """
 
     times: Array
@@ -95,15 +101,17 @@ class FlightSamples(NamedTuple):
 
 
 def sample_flight(flown: FlownProblem, times: Array) -> FlightSamples:
-    """The flight at times (N,) [s]."""
+    """The flight at times (N,) [s].
+
+    Raises:
+        InvalidInput: the flight takes longer than the motion of a body is known.
+    """
     problem, flight = flown.problem, flown.flight
     robot = problem.robot
     states = flight.at(times)
     frames = motion_frames(robot, states.configurations)
     mass = sum(body.mass for body in list(robot.model.inertias)[1:])
     push = states.thrust / mass + flight.pulse_accelerations(times)
-    rows = np.arange(len(times))
-    query = ObstacleQuery(robot, problem.obstacles)
     return FlightSamples(
         times=times,
         states=states,
@@ -111,7 +119,7 @@ def sample_flight(flown: FlownProblem, times: Array) -> FlightSamples:
         speed=np.linalg.norm(states.base_velocity, axis=1),
         thrust=np.linalg.norm(push, axis=1),
         rotation=continuous(rotation_vector(states.attitudes[:1], states.attitudes)),
-        clearances=query.distances_at(frames.placements, rows, np.zeros((len(times), 3))),
+        clearances=clearances(frames, problem.obstacles, times),
     )
 
 

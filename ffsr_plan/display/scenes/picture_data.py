@@ -12,8 +12,8 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags, frozen
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.robots.robot import SpaceRobot
-from ffsr_plan.scene.obstacle_shapes import placed_axes
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.obstacle_shapes import placed_axes
 from ffsr_plan.search.records import Branches
 
 _SOLID_COUNT = 60  # scenes of at most so many obstacles are drawn solid as a whole

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
+from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags
+from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_mesh, key_rows
 from ffsr_plan.display.scenes.meshcat_objects import (
     MeshcatNode,
     instances,
@@ -18,7 +21,8 @@ from ffsr_plan.display.scenes.meshcat_objects import (
     triangle_mesh,
 )
 from ffsr_plan.display.scenes.projection import view_axes, visible_shapes
-from ffsr_plan.display.scenes.shape_outlines import ROUND, joined, mesh_of, points_of_extent
+from ffsr_plan.display.scenes.shape_outlines import ROUND, joined, mesh_of
+from ffsr_plan.display.scenes.shown_space import farthest_shown, shown_space
 from ffsr_plan.display.scenes.zone_outlines import dashed, lines_of, sides_of
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
@@ -26,13 +30,21 @@ from ffsr_plan.scene.scene import Scene
 
 TRACK, TIPS = (1.0, 0.86, 0.25), (0.35, 0.92, 0.85)  # colours of the base's and the tips' tracks
 _MARGIN = 0.3  # around the scene [m]
+_SHARE_OF_DASHES = 0.05  # of the longest edge of a zone: the least extent for which it is dashed
 _TRIANGLES = 90_000  # of solid and of faint obstacles each; more obstacles are drawn less round
 _ZONE, _ZONE_LINES = 0x8FA0BF, 0xB9C6DE
+_MOVING, _WAY = 0xE07BB0, (0.42, 0.23, 0.33)  # colours of bodies that move, and of their ways
 START, GOAL, _OBSTACLE, _FAINT = 0x4FB3D9, 0x58C27D, 0xAEB4BF, 0x8FA0BF
 _GLOW = np.array([(0.14, 0.10, 0.29), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0.99, 0.72, 0.20)])
 
 
-def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) -> dict[str, Any]:
+def set_up(
+    viewer: MeshcatNode,
+    problem: Problem,
+    centers: Array,
+    radii: Array,
+    tracks: Sequence[BodyTrack] = (),
+) -> dict[str, Any]:
     """Set light and background, and rotate the scene so that the path runs from left to right.
 
     Args:
@@ -41,11 +53,13 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
         centers: (..., g, 3) centres of spheres around the robot in the world [m], all of which the
             camera has to see.
         radii: (g,) their radii [m].
+        tracks: bodies that move, which the camera sees where they are near all else.
 
     Returns:
-        Size (3) of the scene to the right, upwards and towards the viewer [m], field of view
-        [degrees] and elevation of the camera [rad], from which the page's script computes where
-        the camera is; and the placement (4, 4) of the world in the scene.
+        Size (3) of what is shown to the right, upwards and towards the viewer [m], the distance
+        up to which something is drawn [m], field of view [degrees] and elevation of the camera
+        [rad], from which the page's script computes where the camera is and how far it sees; and
+        the placement (4, 4) of the world in the scene.
     """
     for name in ("/Grid", "/Axes"):
         viewer[name].set_property("visible", False)
@@ -57,21 +71,16 @@ def set_up(viewer: MeshcatNode, problem: Problem, centers: Array, radii: Array) 
     viewer["/Cameras/default/rotated/<object>"].set_property("fov", fov)
     axes = view_axes(problem)
     scene = problem.scene
-    points: list[Array] = []
-    for sign in (-1.0, 1.0):
-        points.append((centers @ axes.T + sign * radii[:, None]).reshape(-1, 3))
-        points.append(scene.centers @ axes.T + sign * scene.radii[:, None])
-    points.append(points_of_extent(scene) @ axes.T)
-    cloud = np.vstack(points)
-    low, high = cloud.min(axis=0), cloud.max(axis=0)
+    shown = shown_space(scene, centers, radii, axes, tracks)
     root = np.eye(4)
     root[:3, :3] = axes
-    root[:3, 3] = -0.5 * (low + high)
+    root[:3, 3] = -shown.mean(axis=0)
     viewer.set_transform(root)
     return {
-        "size": (high - low + _MARGIN).tolist(),
+        "size": (np.ptp(shown, axis=0) + _MARGIN).tolist(),
         "fov": fov,
         "elevation": math.radians(62.0),
+        "reach": farthest_shown(scene, shown, axes, tracks),
         "root": root.tolist(),
     }
 
@@ -95,18 +104,48 @@ def add_obstacles(viewer: MeshcatNode, scene: Scene, drawn_solid: Flags) -> None
             viewer[f"{name}_shapes"].set_object(triangle_mesh(*mesh), material)
 
 
-def shown_box(scene: Scene, centers: Array, radii: Array) -> tuple[Array, Array]:
-    """Least and greatest coordinates (3,) in the world of obstacles, zones that end, and robot [m].
+def add_bodies(viewer: MeshcatNode, tracks: Sequence[BodyTrack], up: Array) -> None:
+    """Add bodies that move, where they are in the first frame, and the ways of their middles.
 
     Args:
-        scene: obstacles and zones.
-        centers: (..., g, 3) as of `set_up`.
-        radii: (g,) likewise.
+        viewer: the node that receives them, the k-th body as its child k.
+        tracks: the bodies.
+        up: (3,) direction that the ways face.
     """
-    ends = [(centers + sign * radii[:, None]).reshape(-1, 3) for sign in (-1.0, 1.0)]
-    ends += [scene.centers + sign * scene.radii[:, None] for sign in (-1.0, 1.0)]
-    cloud = np.vstack([*ends, points_of_extent(scene)])
-    return cloud.min(axis=0), cloud.max(axis=0)
+    import meshcat.geometry as mg
+
+    material = mg.MeshPhongMaterial(color=_MOVING, shininess=60)
+    count = sum(len(track.body.shapes) for track in tracks)
+    rings = int(np.clip(math.sqrt(_TRIANGLES / max(count, 1) / 4.0), 6, ROUND))
+    for k, track in enumerate(tracks):
+        node = viewer[str(k)]
+        node["shapes"].set_object(triangle_mesh(*body_mesh(track.body, rings)), material)
+        node.set_transform(_pose(track, 0))
+        if track.moves_away:
+            middles = track.middles()
+            way = middles[key_rows(middles, 1e-2)]
+            add_track(viewer["ways"][str(k)], way, 0.014, _WAY, up)
+
+
+def add_body_ghosts(viewer: MeshcatNode, tracks: Sequence[BodyTrack], rows: Sequence[int]) -> None:
+    """Add transparent copies of bodies that move, where they are in some frames (rows)."""
+    import meshcat.geometry as mg
+
+    material = mg.MeshPhongMaterial(color=_MOVING, opacity=0.2, depthWrite=False)
+    for k, track in enumerate(tracks):
+        mesh = triangle_mesh(*body_mesh(track.body, 12))
+        for row in rows:
+            node = viewer[str(k)][str(row)]
+            node.set_object(mesh, material)
+            node.set_transform(_pose(track, row))
+
+
+def _pose(track: BodyTrack, row: int) -> Array:
+    """(4, 4) placement of a body's axes in the world in one frame."""
+    placed = np.eye(4)
+    placed[:3, :3] = rotations.matrix(track.attitudes[row])
+    placed[:3, 3] = track.positions[row]
+    return placed
 
 
 def add_zones(viewer: MeshcatNode, scene: Scene, centers: Array, radii: Array) -> None:
@@ -122,7 +161,7 @@ def add_zones(viewer: MeshcatNode, scene: Scene, centers: Array, radii: Array) -
 
     if not scene.keep_in:
         return
-    low, high = shown_box(scene, centers, radii)
+    low, high = shown_space(scene, centers, radii)
     material = mg.MeshBasicMaterial(
         color=_ZONE, opacity=0.07, transparent=True, depthWrite=False, side=2
     )
@@ -133,8 +172,10 @@ def add_zones(viewer: MeshcatNode, scene: Scene, centers: Array, radii: Array) -
             corners = sides.reshape(-1, 3)
             mesh = triangle_mesh(corners, np.arange(len(corners)).reshape(-1, 3))
             viewer[str(k)]["sides"].set_object(mesh, material)
-            dashes = dashed(lines_of(zone, low, high).segments, float(np.max(high - low)))
-            viewer[str(k)]["edges"].set_object(lines(dashes, stroke))
+            segments = lines_of(zone, low, high).segments
+            longest = float(np.max(np.linalg.norm(np.diff(segments, axis=1), axis=2)))
+            extent = max(float(np.max(high - low)), _SHARE_OF_DASHES * longest)
+            viewer[str(k)]["edges"].set_object(lines(dashed(segments, extent), stroke))
 
 
 def add_ends(

@@ -12,8 +12,9 @@ from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.display.scenes.projection import convex_outline
 from ffsr_plan.meshes import mesh_files
-from ffsr_plan.scene.keep_in_zones import HalfSpace
-from ffsr_plan.scene.obstacle_shapes import (
+from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
+from ffsr_plan.scene.shapes.obstacle_shapes import (
     Ball,
     Box,
     Capsule,
@@ -23,7 +24,6 @@ from ffsr_plan.scene.obstacle_shapes import (
     ObstacleShape,
     placed_axes,
 )
-from ffsr_plan.scene.scene import Scene
 
 ROUND = 24
 """Parallels of latitude at which polygons look round."""

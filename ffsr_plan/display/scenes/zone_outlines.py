@@ -12,8 +12,8 @@ import numpy as np
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.display.scenes.shape_outlines import mesh_of, outline_of
-from ffsr_plan.scene.keep_in_zones import HalfSpace, Zone, planes_of
-from ffsr_plan.scene.obstacle_shapes import Ball
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace, Zone, planes_of
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball
 
 ZONE = "keep-in zone"
 _AHEAD, _ASIDE = 0.1, 0.02  # of the largest extent: planes so far beyond what is shown are drawn,

@@ -81,6 +81,20 @@ const words = document.createElement("p");
 words.textContent = data.axis.title;
 charts.append(words);
 
+// A table of moving bodies: how near each comes, and when. A press on a row goes there.
+if (data.bodies.length) {
+  const table = document.createElement("table");
+  table.id = "bodies";
+  table.innerHTML = "<tr><th>moving body</th><th>motion</th><th>nearest</th><th>at</th></tr>";
+  for (const body of data.bodies) {
+    const row = table.insertRow();
+    const cells = [body.name, body.motion, `${body.least.toFixed(3)} m`, `${body.time.toFixed(1)} s`];
+    for (const text of cells) row.insertCell().textContent = text;
+    row.onclick = () => halt(body.time / data.axis.end);
+  }
+  charts.append(table);
+}
+
 // A press on a plot moves the robot there.
 let held = false;
 function seek(event) {

@@ -39,6 +39,7 @@ function draw(cycle) {
 }
 
 label(data.trees);
+byId("moving").hidden = !data.bodies;
 const source = new EventSource("events");
 source.onmessage = event => {
   const message = JSON.parse(event.data);

@@ -43,6 +43,7 @@ byId("plots").onchange = event => { plot(event.target.checked); fit(); };
 margins = () => [0, 60, charts.hidden ? 0 : charts.offsetWidth + 18, 84];
 plot(byId("plots").checked = window.innerWidth >= 900);
 document.querySelector('#show input[data-path="trails"]').parentElement.hidden = !data.ants;
+byId("moving").hidden = !data.bodies.length;
 byId("follow").checked = false;
 
 // Wishes at the end of the address, such as #t=30&view=top&follow=1.

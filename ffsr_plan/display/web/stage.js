@@ -13,6 +13,15 @@ const plus = (a, b, by = 1) => a.map((x, k) => x + by * b[k]);
 const unit = a => a.map(x => x / Math.hypot(...a));
 const upwards = ([x, y, z]) => [x, z, -y];  // axes of the scene to those of the camera, y upwards
 
+// Near and far planes by the camera's place: fixed ones would cut off wide scenes, or be too coarse.
+function setDepth() {
+  const { camera, controls } = viewer, away = camera.position.distanceTo(controls.target);
+  camera.near = Math.min(0.01 * Math.max(away, 0.1), 10);
+  camera.far = 1.1 * (camera.position.length() + data.view.reach) + 1;
+  camera.updateProjectionMatrix();
+}
+viewer.controls.addEventListener("change", setDepth);
+
 // The part of the window that panels leave free: left, top, right, bottom.
 let margins = () => [0, 0, 0, 90];
 
@@ -30,6 +39,7 @@ function look(back, target, corners) {
   viewer.camera.position.set(...upwards(plus(target, back, away)));
   viewer.controls.target.set(...upwards(target));
   viewer.controls.update();
+  setDepth();
   viewer.set_dirty();
 }
 function box(size) {

@@ -21,6 +21,7 @@ function choose(name) {
   for (const each of document.querySelectorAll("#views button")) {
     each.classList.toggle("on", each.dataset.view === name);
   }
+  byId("title").style.maxWidth = `min(46vw, ${byId("show").offsetLeft - 58}px)`;
   byId("views").style.top = `${byId("title").offsetTop + byId("title").offsetHeight + 8}px`;
   const near = follow.checked, base = toScene(basePose(position).slice(0, 3));
   followed = near ? base : null;
@@ -60,13 +61,20 @@ const tags = data.names.map(name => {
   const tag = document.createElement("span");
   tag.textContent = name.text;
   byId("names").append(tag);
-  return [tag, toScene(name.at)];
+  return [tag, name.way ? name.way.map(([share, ...at]) => [share, ...toScene(at)]) : [[0, ...toScene(name.at)]]];
 });
+// Where a name is now: moving bodies have ways, of which each row is a share of the motion and a place.
+function placeOf(way) {
+  const next = way.findIndex(row => row[0] >= position);
+  if (next < 1) return way.at(next).slice(1);
+  const [a, b] = [way[next - 1], way[next]];
+  return plus(a.slice(1), plus(b.slice(1), a.slice(1), -1), (position - a[0]) / (b[0] - a[0]));
+}
 byId("named").onchange = event => { byId("names").hidden = !event.target.checked; };
 byId("named").parentElement.hidden = !tags.length;
 function placeNames() {
-  for (const [tag, at] of tags) {
-    const seen = viewer.camera.position.clone().set(...upwards(at)).project(viewer.camera);
+  for (const [tag, way] of tags) {
+    const seen = viewer.camera.position.clone().set(...upwards(placeOf(way))).project(viewer.camera);
     tag.style.display = Math.abs(seen.z) < 1 ? "" : "none";
     tag.style.left = `${(seen.x + 1) / 2 * window.innerWidth}px`;
     tag.style.top = `${(1 - seen.y) / 2 * window.innerHeight}px`;

@@ -27,7 +27,7 @@ from ffsr_plan.proof.kernels.travel import (
     bound_travel,
     scratch_for,
 )
-from ffsr_plan.scene.obstacle_tree import ObstacleTree
+from ffsr_plan.scene.shapes.obstacle_tree import ObstacleTree
 
 SHAPE = np.dtype(
     [

@@ -92,18 +92,19 @@ def prove_path(lattice: PostureLattice, positions: Array, joints: Array) -> Path
     problem = lattice.problem
     motion = Motion(problem.robot, problem.mode, problem.start, problem.goal, positions, joints)
     lattice.deadline.check()
-    prover = Prover(motion, problem.obstacles, problem.tolerance, lattice.deadline)
     m = len(positions) - 1
+    pace = problem.pace(m)
+    prover = Prover(motion, problem.obstacles, problem.tolerance, lattice.deadline, pace)
     still = np.zeros(3)
     clearances = prover.clearances(np.arange(m + 1), np.zeros((m + 1, 3)))
     ends, none = np.column_stack([clearances[:-1], clearances[1:]]), np.zeros((m, 3))
     verdicts = prover.certify_all(np.arange(m), none, none, ends)
     refused = []
-    for layer, (verdict, links) in enumerate(zip(verdicts, prover.self_verdicts(), strict=True)):
+    for layer, (verdict, links) in enumerate(zip(verdicts, prover.links.verdicts(), strict=True)):
         if not verdict.free:
             near = prover.nearest(layer, still, still, verdict.time)
         elif not links.free:
-            near = prover.nearest_links(layer, links.time)
+            near = prover.links.nearest(layer, links.time)
         else:
             continue
         refused.append(RefusedEdge(layer, near.link, near.obstacle, near.distance))
@@ -169,11 +170,11 @@ def check_start(problem: Problem) -> None:
     """
     start = problem.start
     motion = Motion(problem.robot, problem.mode, start, start, np.tile(start[:3], (2, 1)))
-    prover = Prover(motion, problem.obstacles, problem.tolerance)
+    prover = Prover(motion, problem.obstacles.at(0.0), problem.tolerance)
     still = np.zeros(3)
-    for near in (prover.nearest(0, still, still, 0.0), prover.nearest_links(0, 0.0)):
+    for near in (prover.nearest(0, still, still, 0.0), prover.links.nearest(0, 0.0)):
         if near.distance <= 0.0:
-            raise start_in_collision(problem.robot, problem.obstacles, start)
+            raise start_in_collision(problem.robot, problem.obstacles.at(0.0), start)
 
 
 def unproven(problem: Problem, edge: RefusedEdge, cut_short: bool) -> UnprovenPath:

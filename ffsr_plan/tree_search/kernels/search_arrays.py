@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ffsr_plan.core.arrays import Array, IntArray, Records
-from ffsr_plan.scene.obstacle_tree import ObstacleTree
+from ffsr_plan.scene.shapes.obstacle_tree import ObstacleTree
 
 Record = Any
 TURN, JOINTS = 3, 4

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ffsr_plan.core.arrays import Array, Flags, IntArray
-from ffsr_plan.scene.keep_in_zones import HalfSpace, Zone
-from ffsr_plan.scene.obstacle_shapes import (
+from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace, Zone
+from ffsr_plan.scene.shapes.obstacle_shapes import (
     Ball,
     Box,
     Capsule,

@@ -8,6 +8,7 @@ from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.verification.flights.flown import Flown
 from ffsr_plan.verification.flights.used_limits import UsedLimits
 from ffsr_plan.verification.motion_samples import Samples, samples_of
+from ffsr_plan.verification.moving_bodies.scene_bodies import SceneBodies
 from ffsr_plan.verification.rate_bounds import RateBounds
 from ffsr_plan.verification.urdf_reading import Bodies
 
@@ -38,6 +39,7 @@ class FlownCourse:
         still = np.zeros(self.edges)
         self.base_speeds: Array = still if mode.floats else used.base_speeds * lengths
         self.held_turns = None if mode.attitude_reacts else used.turn_speeds * lengths
+        self.moving = SceneBodies((), np.zeros(3), flight.duration)
 
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on pieces (N,)."""
@@ -45,4 +47,6 @@ class FlownCourse:
         states = self._flight.at(np.minimum(times, self._flight.duration))
         rates = states.joint_velocities * self._lengths[edge][:, None]
         still = np.zeros(len(edge))
-        return samples_of(self._flight, self._bodies, states.configurations, still, rates)
+        q = states.configurations
+        samples = samples_of(self._flight, self._bodies, q, still, rates, times)
+        return samples._replace(moving=self.moving.poses(times))

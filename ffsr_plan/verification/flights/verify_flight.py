@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.flights.flight_ends import flight_ends
 from ffsr_plan.verification.flights.flown import Flown
 from ffsr_plan.verification.flights.flown_course import FlownCourse
@@ -99,7 +100,13 @@ def verify_flight(flight: Flown, clearance: float) -> FlightReport:
 
     Returns:
         The measured values, the problems found, and what was not checked.
+
+    Raises:
+        InvalidInput: bodies of the scene move; flights past them are not made.
     """
+    if flight.problem.scene.bodies:
+        allowed = "a scene at rest for a flight; a plan past bodies that move verifies by itself"
+        raise InvalidInput("scene bodies", list(flight.problem.scene.bodies), allowed)
     robot = flight.problem.robot
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
     used = used_limits(flight)

@@ -12,7 +12,7 @@ from ffsr_plan.core.checks import FARTHEST
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Numbers, Vector
 from ffsr_plan.core.settings import setting, settings
-from ffsr_plan.scene.obstacle_shapes import Ball, Box, Name
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Name
 
 
 @settings

@@ -12,7 +12,7 @@ from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.meshes import mesh_files
 from ffsr_plan.meshes.convex_pieces import convex_pieces
-from ffsr_plan.scene.obstacle_shapes import Hull
+from ffsr_plan.scene.shapes.obstacle_shapes import Hull
 
 _MOST_PIECES = 1000
 

@@ -51,7 +51,7 @@ def sphere_tree(centers: Array, radii: Array) -> SphereTree:
 
 
 def _tree_of_many(centers: Array, radii: Array) -> SphereTree:
-    from ffsr_plan.scene.sphere_tree_kernel import fill_tree
+    from ffsr_plan.scene.shapes.sphere_tree_kernel import fill_tree
 
     count = len(radii)
     spheres, order = np.column_stack([centers, radii]), np.arange(count)

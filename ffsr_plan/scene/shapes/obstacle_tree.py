@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ffsr_plan.core.arrays import Array, IntArray, frozen
-from ffsr_plan.scene.keep_in_zones import Zone, planes_of
-from ffsr_plan.scene.obstacle_shapes import Ball, ObstacleShape, placed_axes
-from ffsr_plan.scene.sphere_tree import sphere_tree
+from ffsr_plan.scene.shapes.keep_in_zones import Zone, planes_of
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, ObstacleShape, placed_axes
+from ffsr_plan.scene.shapes.sphere_tree import sphere_tree
 
 SOLID_SIZE = 16
 """Numbers of a solid: rotation, row by row, middle, half sides and skin."""
@@ -66,12 +66,9 @@ def obstacle_tree(
         zones: zones that the robot stays in.
         growth: distance by which shapes are grown and zones shrunk [m].
     """
-    solids, count = (
-        np.array([_solid(shape, growth) for shape in shapes]).reshape(-1, 16),
-        len(radii),
-    )
-    middles, reaches = solids[:, 9:12], np.linalg.norm(solids[:, 12:15], axis=1) + solids[:, 15]
-    tree = sphere_tree(np.vstack([centers, middles]), np.concatenate([radii, reaches]))
+    solids, count = _solids(shapes, growth), len(radii)
+    around = _around(solids)
+    tree = sphere_tree(np.vstack([centers, around[:, :3]]), np.concatenate([radii, around[:, 3]]))
     solid = np.where(tree.order < count, -1, tree.order - count) if len(shapes) else np.zeros(0)
     planes, balls, numbers = np.zeros((0, 4)), np.zeros((0, 4)), list[int]()
     first = count + len(shapes)
@@ -93,6 +90,26 @@ def obstacle_tree(
         frozen(planes),
         frozen(balls),
     )
+
+
+def bounding_spheres(shapes: Sequence[ObstacleShape]) -> Array:
+    """(n, 4) centre and radius of a sphere around each shape [m].
+
+    Args:
+        shapes: the shapes.
+    """
+    return _around(_solids(shapes, 0.0))
+
+
+def _around(solids: Array) -> Array:
+    """(n, 4) centre and radius of the sphere around each widened box [m]."""
+    reaches = np.linalg.norm(solids[:, 12:15], axis=1) + solids[:, 15]
+    return np.column_stack([solids[:, 9:12], reaches])
+
+
+def _solids(shapes: Sequence[ObstacleShape], growth: float) -> Array:
+    """(n, 16) the widened boxes of shapes."""
+    return np.array([_solid(shape, growth) for shape in shapes]).reshape(-1, SOLID_SIZE)
 
 
 def _solid(shape: ObstacleShape, growth: float) -> Array:

@@ -1,0 +1,32 @@
+"""Times of plans among bodies that move, and of plans that wait."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ffsr_plan as fp
+
+
+def drifting(count):
+    """Balls that drift in the paper's plane."""
+    rng = np.random.default_rng(0)
+    velocities = rng.normal(size=(count, 3)) * (0.05, 0.05, 0.0)
+    places = rng.uniform((1.0, -4.0, 0.0), (9.0, 4.0, 0.0), (count, 3))
+    pairs = zip(velocities, places, strict=True)
+    return [fp.MovingBody([fp.Ball(0.3)], fp.Drift(v), place) for v, place in pairs]
+
+
+@pytest.mark.parametrize("bodies", [0, 6])
+def test_optimum_of_the_paper_with_bodies(benchmark, problem, bodies):
+    scene = replace(problem.scene, bodies=drifting(bodies))
+    moved = replace(problem, scene=scene, duration=200.0)
+    fp.plan(moved, fp.LatticeOptimum(), refine=False)
+    benchmark(lambda: fp.plan(moved, fp.LatticeOptimum(), refine=False))
+
+
+@pytest.mark.parametrize("scenario", ["crossing", "door", "tumbling"])
+def test_scenario_with_bodies(benchmark, scenario):
+    problem = fp.load_scenario(scenario)
+    fp.plan(problem)
+    benchmark(lambda: fp.plan(problem))

@@ -1,0 +1,1 @@
+"""Studies of bodies that move, and of lattices with progress."""

@@ -1,0 +1,84 @@
+"""The exact optimum of a lattice with progress: shortest paths, nodes and edges on demand.
+
+Nodes that are not evaluated are assumed to have the largest clearance that others allow, and edges
+to be free, so that the first shortest path that holds is the optimum.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ffsr_plan.core.arrays import IntArray
+from ffsr_plan.core.errors import NoPath
+from ffsr_plan.problem.advice import against_closed_times
+from ffsr_plan.progress_lattice.progress_roadmap import ProgressRoadmap
+from ffsr_plan.time_limit.deadline import Deadline
+
+
+class ProgressSearch:
+    """A search for the optimum that knows a lower bound at any time.
+
+    Attributes:
+        bound: F that no path of the lattice falls below [length units].
+    """
+
+    def __init__(self, roadmap: ProgressRoadmap, deadline: Deadline) -> None:
+        """A search of a roadmap.
+
+        Args:
+            roadmap: the lattice.
+            deadline: after which the search raises `OutOfTime`.
+        """
+        self._roadmap, self._deadline, self.bound = roadmap, deadline, 0.0
+        shape = roadmap.node_costs.shape
+        self._costs = np.full(shape, np.inf)
+        self._costs[0] = np.where(np.isfinite(roadmap.node_costs[0]), 0.0, np.inf)
+        self._before: IntArray = np.zeros(shape, dtype=np.int64)
+
+    def path(self) -> IntArray:
+        """The path with the least F, all its edges proven free.
+
+        Returns:
+            (m + 1, 3) place, offset, and step aside towards the next layer.
+
+        Raises:
+            NoPath: there is none.
+            OutOfTime: at the deadline; `bound` holds.
+        """
+        roadmap, first = self._roadmap, 0
+        while True:
+            path = self._shortest(first)
+            if path is None:
+                raise self._no_path()
+            changed = roadmap.learn(path)
+            if changed is None:
+                changed = roadmap.prove(path)
+            if changed is None:
+                return path
+            first = changed
+
+    def _shortest(self, first: int) -> IntArray | None:
+        """The shortest path at the present costs; None if there is none."""
+        from ffsr_plan.progress_lattice.progress_kernels import extend, trace
+
+        self._deadline.check()
+        roadmap, steps = self._roadmap, self._roadmap.steps
+        extend(
+            first, roadmap.edges, roadmap.heads, roadmap.edge_costs, roadmap.node_costs,
+            roadmap.at_rest, roadmap.moving, self._costs, self._before,
+        )  # fmt: skip
+        least = float(self._costs[-1, steps.goal, roadmap.origin])
+        if not np.isfinite(least):
+            return None
+        self.bound = max(self.bound, least)
+        path = np.empty((len(self._costs), 3), dtype=np.int64)
+        trace(self._before, roadmap.heads.shape[1], steps.goal, roadmap.origin, path)
+        return path
+
+    def _no_path(self) -> NoPath:
+        """The error for a lattice without a path: the first layer that cannot be reached."""
+        reached = np.isfinite(self._costs).any(axis=(1, 2))
+        problem = self._roadmap.problem
+        layer = int(np.argmin(reached)) if not reached.all() else len(reached) - 1
+        divisions = problem.given_lattice.divisions
+        return NoPath(layer, (), divisions, (), against_closed_times(problem))

@@ -1,0 +1,1 @@
+"""Shapes of obstacles, zones, and the trees over them."""

@@ -1,0 +1,74 @@
+"""A lattice with progress solved: the optimum, its motion and its certificate."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from ffsr_plan.core.arrays import frozen
+from ffsr_plan.core.errors import InternalError, InvalidInput
+from ffsr_plan.lattice.certificate import Certificate, proven_clearance
+from ffsr_plan.problem.memory_estimate import check_lattice
+from ffsr_plan.problem.objective import objective
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.progress_lattice.progress_roadmap import ProgressRoadmap
+from ffsr_plan.progress_lattice.progress_search import ProgressSearch
+from ffsr_plan.progress_lattice.progress_steps import edge_lengths, motion_at
+from ffsr_plan.proof.prover import Prover
+from ffsr_plan.search.records import History, SearchRequest, Solution, Trails
+from ffsr_plan.time_limit.deadline import Deadline
+
+
+def solve_with_progress(problem: Problem, request: SearchRequest) -> Solution:
+    """The optimum of a lattice with progress, certified.
+
+    Args:
+        problem: a problem on such a lattice.
+        request: deadline; the path is not refined.
+
+    Raises:
+        InvalidInput: `refine=True`.
+        StartInCollision, GoalInCollision: with link, obstacle and depth.
+        NoPath: the lattice holds no free path.
+        OutOfTime: at the deadline.
+    """
+    if request.refine:
+        raise InvalidInput("refine", True, "False on a lattice with progress")
+    deadline = request.deadline or Deadline()
+    deadline.stage = "the search for a path"
+    check_lattice(problem)
+    roadmap = ProgressRoadmap(problem, deadline)
+    path = ProgressSearch(roadmap, deadline).path()
+    request.begin()
+    progress, offsets = roadmap.steps.values[path[:, 0]], roadmap.offsets[path[:, 1]]
+    motion, m = motion_at(problem, progress, offsets), len(path) - 1
+    prover = Prover(motion, problem.obstacles, problem.tolerance, deadline, problem.pace(m))
+    still, layers = np.zeros((m + 1, 3)), np.arange(m + 1)
+    clearances = prover.clearances(layers, still)
+    ends = np.array([*pairwise(clearances)])
+    verdicts = prover.certify_all(layers[:-1], still[:-1], still[1:], ends)
+    if not all(verdict.free for verdict in verdicts):
+        raise InternalError("a path of proven edges is not proven as one motion")
+    across = np.sum((np.diff(offsets, axis=0) * problem.position_weight) ** 2, axis=1)
+    length = float(np.sum(np.sqrt(edge_lengths(problem, progress) ** 2 + across)))
+    value = objective(problem, length, clearances)
+    counts = roadmap.counts()
+    deadline.close()
+    least, cut = proven_clearance(prover, still, clearances)
+    nodes = np.column_stack([roadmap.lattice.indices[path[:, 1]], progress])
+    return Solution(
+        lattice=None,
+        motion=motion,
+        nodes=frozen(nodes if nodes.shape[1] > 1 else nodes[:, 0]),
+        length=length,
+        objective=value,
+        lattice_objective=value,
+        optimum=value,
+        optimum_is_exact=True,
+        clearances=frozen(clearances),
+        history=History.of_rows(np.array([[value, value, value, 1.0]])),
+        trails=Trails.none(),
+        certificate=Certificate(*counts, least, problem.robot.unchecked_links),
+        interrupted=cut,
+    )
