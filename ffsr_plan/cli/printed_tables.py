@@ -78,7 +78,8 @@ def report_rows(report: Report) -> Iterator[tuple[str, str]]:
         hidden = f"a contact may be hidden between two, {report.largest_gap:.1e} m apart"
     yield "  samples", f"{report.samples}, {hidden}"
     if np.isfinite(report.least_clearance):  # there are obstacles
-        least, bound = report.least_clearance, report.clearance_bound
+        least = report.least_clearance
+        bound = np.floor(1e6 * report.clearance_bound) / 1e6  # a lower bound stays one
         yield "  least clearance", f"{least:.6f} m measured, at least {bound:.6f} m between samples"
     if report.nearest_time is not None:
         near = report.nearest_body or "an obstacle at rest"
@@ -106,7 +107,8 @@ def flight_report_rows(report: FlightReport) -> Iterator[tuple[str, str]]:
     for name, share in report.limits.items():
         yield f"  {name}", f"{share:.1%} of the limit"
     if np.isfinite(report.least_clearance):
-        least, bound = report.least_clearance, report.clearance_bound
+        least = report.least_clearance
+        bound = np.floor(1e6 * report.clearance_bound) / 1e6  # a lower bound stays one
         yield "  least clearance", f"{least:.6f} m measured, at least {bound:.6f} m between samples"
     yield "  not checked", "\n".join(report.not_checked)
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, fields
-from typing import Any, Protocol
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, Protocol, get_args, get_type_hints
 
 from numpy.typing import ArrayLike
 
@@ -300,6 +300,8 @@ class ByKey:
         given = [key for key in self.kinds if key in table]
         if len(given) == 1:
             return self.kinds[given[0]]
+        if not given:
+            self._refuse_inner_fields(table)
         for key in [] if given else table:
             owners = [kind for kind in self.kinds.values() if key in _field_names(kind)]
             if len(owners) == 1:  # then the key that tells the kinds apart is missing
@@ -308,6 +310,20 @@ class ByKey:
                 raise UnknownKey(key, list(self.kinds))
         keys = ", ".join(given or table) or "no key"
         raise InvalidInput("", keys, f"one of {', '.join(self.kinds)}")
+
+    def _refuse_inner_fields(self, table: Mapping[str, object]) -> None:
+        """Refuse a table whose keys are fields of a table that should stand in it."""
+        if not table or any(set(table) <= set(_field_names(kind)) for kind in self.kinds.values()):
+            return
+        found = []
+        for key, kind in self.kinds.items():
+            hint = get_type_hints(kind)[key]
+            inner = [each for each in get_args(hint) or (hint,) if is_dataclass(each)]
+            if any(set(table) <= set(_field_names(each)) for each in inner):  # type: ignore[arg-type]
+                found.append(f"{key} = {{ {', '.join(f'{name} = ...' for name in table)} }}")
+        if found:
+            allowed = f"these in a table of their own: {' or '.join(found)}"
+            raise InvalidInput("", ", ".join(table), allowed)
 
     def __get_pydantic_core_schema__(self, source: object, handler: Callable[[Any], Any]) -> Any:  # noqa: ANN401
         from pydantic_core import core_schema

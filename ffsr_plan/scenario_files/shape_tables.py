@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Annotated
 
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import ByKey, FilePath, Number
 from ffsr_plan.core.settings import setting, settings
 from ffsr_plan.scene.scene import Scene
@@ -134,7 +135,12 @@ class HullTable(_OneShape):
 
     def shape(self, folder: Path) -> ObstacleShape:
         """The hull; paths in it are relative to `folder`."""
-        return self.hull if isinstance(self.hull, Hull) else self.hull.hull(folder)
+        if isinstance(self.hull, Hull):
+            return self.hull
+        try:
+            return self.hull.hull(folder)
+        except InvalidInput as error:
+            raise InvalidInput(f"hull.{error.what}", error.value, error.allowed) from error
 
 
 SHAPE_TABLES: dict[str, type] = {

@@ -21,7 +21,6 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table
 from ffsr_plan.meshes import mesh_files
 from ffsr_plan.meshes.sphere_cover import cover
-from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene import sphere_files
 from ffsr_plan.scene.scene_contents import (
@@ -29,13 +28,14 @@ from ffsr_plan.scene.scene_contents import (
     checked_sources,
     contents,
     member_title,
+    refuse_members,
     row_count,
 )
 from ffsr_plan.scene.shapes.extents import extents
 from ffsr_plan.scene.shapes.keep_in_zones import ZONES, Zone
 from ffsr_plan.scene.shapes.obstacle_shapes import SHAPES, ObstacleShape
 from ffsr_plan.scene.shapes.obstacle_tree import ObstacleTree, obstacle_tree
-from ffsr_plan.scene.urdf_shapes import shapes_of
+from ffsr_plan.scene.urdf_shapes import robot_of, shapes_of
 
 _LARGEST_SCALE = 1e9  # [m] per unit of a mesh
 
@@ -228,9 +228,9 @@ class Scene:
             options: of `load_robot`, such as `package_dirs`.
 
         Raises:
-            InvalidInput: what `load_robot` or `SpaceRobot.configuration` refuse.
+            InvalidInput: what `robot_of` or `SpaceRobot.configuration` refuse.
         """
-        robot = source if isinstance(source, SpaceRobot) else load_robot(source, **options)
+        robot = robot_of(source, options)
         q = robot.configuration(position, attitude, joints)
         return cls(shapes=[*shapes_of(robot, q, text("name", name) or robot.name)])
 
@@ -263,8 +263,9 @@ class Scene:
             path: the file, replaced if it exists.
 
         Raises:
-            InvalidInput: a path that cannot be written.
+            InvalidInput: a path that cannot be written, or obstacles that are no spheres.
         """
+        refuse_members("to_csv", self._members)
         sphere_files.write_csv(path, self.centers, self.radii)
 
     @cached_property
@@ -383,8 +384,7 @@ class Scene:
         bounds = self.bounds()
         if not len(bounds):
             return ""
-        low, high = bounds
-        sides = zip("xyz", low, high, strict=True)
+        sides = zip("xyz", *bounds, strict=True)
         return ", ".join(f"{axis} {a:.4g} to {b:.4g} m" for axis, a, b in sides)
 
     def __len__(self) -> int:

@@ -36,6 +36,21 @@ def checked_members(what: str, given: object, kinds: tuple[type, ...]) -> tuple[
     return tuple(given)
 
 
+def refuse_members(what: str, members: Mapping[str, Sequence[Any]]) -> None:
+    """Refuse obstacles that are no spheres, where only spheres can be kept.
+
+    Args:
+        what: what is asked for.
+        members: the objects of each field of the scene.
+
+    Raises:
+        InvalidInput: there are such obstacles.
+    """
+    if any(members.values()):
+        allowed = "a scene of spheres alone: a table of spheres has no place for others"
+        raise InvalidInput(what, contents(0, members), allowed)
+
+
 def member_title(members: Mapping[str, Sequence[Any]], place: int) -> str:
     """A shape, zone or body as messages name it; empty where there is none.
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import coal
@@ -10,9 +12,29 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.robots.collision_shapes import origin
+from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.shapes.obstacle_shapes import Ball, Box, Capsule, Cylinder, Hull, ObstacleShape
+
+
+def robot_of(source: str | Path | SpaceRobot, options: Mapping[str, Any]) -> SpaceRobot:
+    """The robot, loaded unless it is one.
+
+    Args:
+        source: name of a bundled robot, path of a URDF, or a robot.
+        options: of `load_robot`.
+
+    Raises:
+        InvalidInput: what `load_robot` refuses, or options beside a robot, which is loaded already.
+    """
+    if not isinstance(source, SpaceRobot):
+        return load_robot(source, **options)
+    if options:
+        allowed = "no options of load_robot, as the robot is loaded already"
+        raise InvalidInput(", ".join(options), list(options.values()), allowed)
+    return source
 
 
 def shapes_of(robot: SpaceRobot, q: Array, name: str) -> Iterator[ObstacleShape]:

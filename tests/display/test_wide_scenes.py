@@ -51,6 +51,10 @@ def test_the_page_of_a_wide_scene_shows_the_robot(name, tmp_path):
         tab.wait_until("document.title.startsWith('ready')")
         reaches = tab.ask("viewer.camera.far - viewer.camera.position.length()")
         assert reaches > view["reach"]
+        least = plan.certificate.least_clearance
+        shown = tab.ask("document.querySelector('[data-name=clearance] .limit').textContent")
+        assert 0.98 * least < float(shown.split()[3]) <= least  # what is proven is rounded down
+        assert tab.ask("shortBelow(0.018296)") == "0.0182"
         pictures = []
         for shown in ("true", "false"):
             for node in ("robot", "ghosts"):

@@ -106,7 +106,7 @@ def test_a_hull_comes_from_a_mesh_beside_the_scenario(tmp_path, monkeypatch):
         ("[[obstacles]]\nball = { radius = 1 }\nradius = 1", r"unknown key.*obstacles\.1\.radius"),
         ("[[obstacles]]\nball = 3", r"obstacles\.1\.ball: got 3"),
         ('[[obstacles]]\nhull = "a.stl"', r"obstacles\.1\.hull: got 'a\.stl'"),
-        ('[[obstacles]]\nhull = { mesh = "a.stl" }', r"obstacles\.1: mesh: got '.*a\.stl'"),
+        ('[[obstacles]]\nhull = { mesh = "a.stl" }', r"obstacles\.1: hull\.mesh: got '.*a\.stl'"),
         ("[[obstacles]]\nhull = { points = [[0, 0, 0]] }", r"obstacles\.1\.hull\.points.*1 points"),
         ("[[keep_in]]\nhalf_space = { direction = [0, 0, 0] }", r"keep_in\.0\.half_space"),
         ("[[keep_in]]\ncapsule = { radius = 1 }", r"keep_in\.0.*box, ball, half_space"),
@@ -152,3 +152,24 @@ def test_the_example_of_the_documentation_is_read(validator, tmp_path):  # noqa:
         assert sum(len(scene.shapes) for scene in made) == 6
         assert len(file.keep_in) == 2
     assert texts
+
+
+@pytest.mark.parametrize(
+    ("fields", "shown"),
+    [
+        ("size = [1, 1, 1]\nposition = [1, 9, 0]", "box = { size = ..., position = ... }"),
+        ("radius = 1\nlength = 2", "capsule = { radius = ..., length = ... } or cylinder = {"),
+        ("semi_axes = [1, 1, 1]", "ellipsoid = { semi_axes = ... }"),
+    ],
+)
+def test_fields_of_a_shape_that_stand_outside_its_table_are_told_where(tmp_path, fields, shown):
+    path = write(tmp_path, GOOD + "\n[[obstacles]]\n" + fields + "\n")
+    with pytest.raises(InvalidInput, match=r"obstacles\.\d.*in a table of their own") as raised:
+        fp.load_scenario(path)
+    assert shown in str(raised.value)
+
+
+def test_a_missing_mesh_of_a_hull_is_named(tmp_path):
+    path = write(tmp_path, GOOD + '\n[[obstacles]]\nhull = { mesh = "no.stl" }\n')
+    with pytest.raises(InvalidInput, match=r"obstacles\.\d+.*hull\.mesh"):
+        fp.load_scenario(path)

@@ -54,3 +54,35 @@ def test_spheres_keep_what_they_come_from(tmp_path):
 def test_sources_that_do_not_fit_the_spheres_are_refused(sources):
     with pytest.raises(fp.InvalidInput, match="scene sources"):
         fp.Scene([[0, 0, 0]], [1], sources=sources)
+
+
+@pytest.mark.parametrize(
+    "others", [{"shapes": [fp.Box([1, 1, 1])]}, {"keep_in": [fp.Box([9, 9, 9])]}]
+)
+def test_a_table_of_spheres_is_refused_where_it_would_drop_others(others, tmp_path):
+    scene = fp.Scene([[0, 0, 0]], [1.0], **others)
+    with pytest.raises(fp.InvalidInput, match=r"to_csv.*1 (box|zone).*spheres alone"):
+        scene.to_csv(tmp_path / "spheres.csv")
+    assert not (tmp_path / "spheres.csv").exists()
+
+
+@pytest.mark.parametrize(
+    "too_large",
+    [
+        lambda: fp.Box([2e4, 1, 1]),
+        lambda: fp.Ball(2e4),
+        lambda: fp.Cylinder(1.0, 2e4),
+        lambda: fp.Ellipsoid([1, 1, 2e4]),
+        lambda: fp.Hull([[0, 0, 0], [2e4, 0, 0], [0, 1, 0], [0, 0, 1]]),
+    ],
+)
+def test_sizes_beyond_ten_kilometres_are_refused_with_the_limit(too_large):
+    with pytest.raises(fp.InvalidInput, match=r"at most 10000|10000"):
+        too_large()
+
+
+def test_boxes_of_the_largest_size_are_not_touched_a_metre_away():
+    point = fp.load_robot("point")
+    scene = fp.Scene(shapes=[fp.Box([1e4] * 3, [0.0, 5e3 + 1.5, 0.0])])
+    near = fp.clearance(point, scene, point.configuration())
+    assert 1.0 < near < 1.5 + 1e-5

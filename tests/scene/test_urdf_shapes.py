@@ -49,3 +49,9 @@ def test_shapes_have_the_pose_of_their_link():
 def test_a_wrong_name_is_refused():
     with pytest.raises(fp.InvalidInput, match="name"):
         fp.Scene.from_urdf("planar_dual_arm", name=3)
+
+
+def test_options_of_loading_are_refused_beside_a_loaded_robot():
+    robot = fp.load_robot("planar_dual_arm")
+    with pytest.raises(fp.InvalidInput, match=r"package_dirs.*loaded already"):
+        fp.Scene.from_urdf(robot, package_dirs=[])

@@ -6,6 +6,11 @@ function short(value, peak) {
   const decimals = Math.min(Math.max(2 - Math.floor(Math.log10(peak)), 0), 12);
   return Number(value.toFixed(decimals)).toString();
 }
+function shortBelow(value) {
+  if (!(value > 0)) return "0";
+  const decimals = Math.min(Math.max(2 - Math.floor(Math.log10(value)), 0), 12), power = 10 ** decimals;
+  return Number((Math.floor(value * power) / power).toFixed(decimals)).toString();
+}
 function polyline(values, place, colour) {
   return `<polyline fill="none" stroke="${colour}" stroke-width="1.5" vector-effect="non-scaling-stroke"
     points="${values.map((v, k) => `${across(k)},${place(v)}`).join(" ")}"/>`;
@@ -47,7 +52,9 @@ const updates = data.charts.map(chart => {
     const [least, most] = [Math.min(...chart.limits), Math.max(...chart.limits)];
     const words = document.createElement("span");
     words.className = "limit";
-    words.textContent = `${chart.bound} ${short(least, least)}${most > least ? ` to ${short(most, most)}` : ""} ${chart.unit}`;
+    const lower = chart.bound.startsWith("proven");  // rounded down, so that it stays proven
+    const shown = lower ? shortBelow(least) : short(least, least);
+    words.textContent = `${chart.bound} ${shown}${most > least ? ` to ${short(most, most)}` : ""} ${chart.unit}`;
     list.append(words);
   }
   charts.append(figure);

@@ -27,6 +27,9 @@ from ffsr_plan.meshes import mesh_files
 _ORIGIN = (0.0, 0.0, 0.0)
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 _MOST_POINTS = 100_000
+LARGEST_SIZE = 1e4
+"""Limit [m] of sizes: larger bodies count as touched while they are metres away, as the errors of
+bounds on their distances grow with them."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class Lengths(Rule):
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> Array:
         """See `Rule.check`."""
-        lengths = finite_array(what, value, (3,), FARTHEST)  # type: ignore[arg-type]
+        lengths = finite_array(what, value, (3,), LARGEST_SIZE)  # type: ignore[arg-type]
         if np.any(lengths < 0.0) or (not self.flat and np.any(lengths == 0.0)):
             least = "of at least 0" if self.flat else "above 0"
             raise InvalidInput(what, lengths.tolist(), f"three lengths {least} [m]")
@@ -71,7 +74,7 @@ class Lengths(Rule):
     def json_schema(self) -> dict[str, Any]:
         """See `Rule.json_schema`."""
         least = {"minimum": 0.0} if self.flat else {"exclusiveMinimum": 0.0}
-        items = {"type": "number", **least, "maximum": FARTHEST}
+        items = {"type": "number", **least, "maximum": LARGEST_SIZE}
         return {"type": "array", "items": items, "minItems": 3, "maxItems": 3}
 
 
@@ -81,7 +84,7 @@ class Points(Rule):
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> Array:
         """See `Rule.check`."""
-        points = finite_array(what, value, (-1, 3), FARTHEST)  # type: ignore[arg-type]
+        points = finite_array(what, value, (-1, 3), LARGEST_SIZE)  # type: ignore[arg-type]
         if not 4 <= len(points) <= _MOST_POINTS:
             raise InvalidInput(what, f"{len(points)} points", f"4 to {_MOST_POINTS} points")
         try:
@@ -95,7 +98,7 @@ class Points(Rule):
         return {"type": "array", "items": point, "minItems": 4}
 
 
-Length = Annotated[float, Number(above=0.0, at_most=FARTHEST)]
+Length = Annotated[float, Number(above=0.0, at_most=LARGEST_SIZE)]
 Place = Annotated[Vector, Numbers(3, FARTHEST)]
 Turn = Annotated[Vector, Attitude()]
 Name = Annotated[str, Text()]
