@@ -73,7 +73,7 @@ def edge_past(moving, motion, pace):
     )  # fmt: skip
 
 
-def sampled(moving, motion, pace, count=400):
+def sampled(moving, motion, pace, count=160):
     """Distances from the shapes where they are in the world, one scene an instant."""
     shares = np.linspace(0.0, 1.0, count + 1)
     q = motion.at(np.zeros(count + 1, dtype=np.int64), shares)
