@@ -10,11 +10,12 @@ import ffsr_plan as fp
 
 def drifting(count):
     """Balls that drift in the paper's plane."""
-    rng = np.random.default_rng(0)
-    velocities = rng.normal(size=(count, 3)) * (0.05, 0.05, 0.0)
-    places = rng.uniform((1.0, -4.0, 0.0), (9.0, 4.0, 0.0), (count, 3))
-    pairs = zip(velocities, places, strict=True)
-    return [fp.MovingBody([fp.Ball(0.3)], fp.Drift(v), place) for v, place in pairs]
+    rng, bodies = np.random.default_rng(0), []
+    for _ in range(count):
+        motion = fp.Drift(rng.normal(size=3) * (0.05, 0.05, 0.0))
+        place = rng.uniform(1.0, 9.0), rng.uniform(-4.0, 4.0), 0.0
+        bodies.append(fp.MovingBody([fp.Ball(0.3)], motion, place))
+    return bodies
 
 
 @pytest.mark.parametrize("bodies", [0, 6])

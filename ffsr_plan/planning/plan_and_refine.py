@@ -207,7 +207,8 @@ def _certified(
     problem: Problem, planner: Planner, seed: int | None, watch: Stopwatch, solution: Solution
 ) -> Plan:
     """The plan of a solution; `watch` was started when it was asked for."""
-    if isinstance(planner, Portfolio) and solution.lattice is None:
+    portfolio = isinstance(planner, Portfolio) and problem.lattice is not None
+    if portfolio and solution.lattice is None:
         problem = without_lattice(problem)  # the trees of a portfolio found the path
     end = solution.motion.configurations()[-1]
     return Plan(
