@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.bodies.moving_body import MovingBody
+from ffsr_plan.bodies.body_motion import Poses
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core import rotations
@@ -13,16 +13,14 @@ from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.shape_arrays import BOX
 
 
-def in_axes(placed: Placements, body: MovingBody, times: Array, shifts: Array) -> Placements:
+def in_axes(placed: Placements, poses: Poses, shifts: Array) -> Placements:
     """Placements in the world, seen in the axes of a body.
 
     Args:
         placed: K placements.
-        body: the body.
-        times: (K,) the time of each [s].
+        poses: of the body, K.
         shifts: (K, 3) displacements of the whole robot, world axes [m].
     """
-    poses = body.poses(times)
     turns = rotations.matrix(poses.attitudes)
     frames, count = placed.frames.copy(), placed.frames.shape[1]
     moved = frames[..., 9:12] + (shifts - poses.positions)[:, None]
@@ -36,25 +34,19 @@ class BodyDistances:
     """Distances to a body from placements of the robot, each at its own time."""
 
     def __init__(
-        self,
-        robot: SpaceRobot,
-        body: MovingBody,
-        query: ObstacleQuery,
-        placed: Placements,
-        times: Array,
+        self, robot: SpaceRobot, query: ObstacleQuery, placed: Placements, poses: Poses
     ) -> None:
         """See the placements in the axes of the body.
 
         Args:
             robot: the robot.
-            body: the body.
             query: distances to the body's shapes.
             placed: K placements.
-            times: (K,) the time of each [s].
+            poses: of the body at the times of the placements, K.
         """
         self._query = query
-        self._seen = in_axes(placed, body, times, np.zeros((len(times), 3)))
-        self._turns = rotations.matrix(body.poses(times).attitudes)
+        self._seen = in_axes(placed, poses, np.zeros((len(poses.positions), 3)))
+        self._turns = rotations.matrix(poses.attitudes)
         shapes = robot.primitives
         around = np.linalg.norm(shapes.sizes, axis=1)
         around = np.where(shapes.kinds == BOX, around, shapes.sizes.sum(axis=1))

@@ -54,7 +54,6 @@ class ObstacleQuery:
 
     Attributes:
         empty: whether the scene has no obstacles or the robot no shapes.
-        radius: distance of the farthest point of spheres and shapes from the origin, at most [m].
         count: number of configurations whose clearance Coal has measured.
     """
 
@@ -72,12 +71,15 @@ class ObstacleQuery:
         self._bounds_only = not (self._shapes.exact.all() and scene.is_closed_form)
         self.empty = len(scene) == 0 or len(self._shapes.kinds) == 0
         self.count = 0
-        spheres = self._tree.spheres
-        self.radius = float(
-            np.max(np.linalg.norm(spheres[:, :3], axis=1) + spheres[:, 3], initial=0.0)
-        )
         self._at_once = _AT_ONCE
         self._measures = CoalMeasures(robot, scene)
+
+    @property
+    def radius(self) -> float:
+        """Distance of the farthest point of spheres and shapes from the origin, at most [m]."""
+        spheres = self._tree.spheres
+        far = np.linalg.norm(spheres[:, :3], axis=1) + spheres[:, 3]
+        return float(np.max(far, initial=0.0))
 
     def distances(self, configurations: Array) -> Array:
         """Least distances of many configurations.

@@ -13,11 +13,10 @@ from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.bodies.pose_function import PoseFunction
 from ffsr_plan.bodies.track import Track
 from ffsr_plan.bodies.tumble import Tumble
-from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Rule
-from ffsr_plan.core.settings import from_mapping, setting, settings
-from ffsr_plan.plans.shape_entries import Bodies, plain_entry
+from ffsr_plan.core.settings import setting, settings
+from ffsr_plan.plans.shape_entries import Bodies, made_of_kind, plain_entry
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.scene.shapes.obstacle_shapes import SHAPES, Name, Place, Turn
 
@@ -68,14 +67,7 @@ class Motion(Rule):
 
     def check(self, what: str, value: object, others: Mapping[str, Any]) -> object:
         """See `Rule.check`."""
-        if not isinstance(value, Mapping):
-            raise InvalidInput(what, value, "a table with a kind")
-        table = dict(value)
-        kind = one_of(f"{what}.kind", table.pop("kind", None), list(MOTION_KINDS))
-        try:
-            return from_mapping(MOTION_KINDS[kind], table)
-        except InvalidInput as error:
-            raise InvalidInput(f"{what}{error.what}", error.value, error.allowed) from None
+        return made_of_kind(what, value, MOTION_KINDS)
 
 
 @settings

@@ -64,14 +64,30 @@ class Bodies(Rule):
         return tuple(self._made(what, k, each) for k, each in enumerate(value))
 
     def _made(self, what: str, number: int, value: object) -> object:
-        what = f"{what}.{number}"
-        if not isinstance(value, Mapping):
-            raise InvalidInput(what, value, "a table with a kind")
-        table = dict(value)
-        kind = one_of(f"{what}.kind", table.pop("kind", None), list(self.kinds))
         try:
-            return from_mapping(self.kinds[kind], table)
+            return made_of_kind(f"{what}.{number}", value, self.kinds)
         except UnknownKey as error:
             raise error.within(str(number)) from None
-        except InvalidInput as error:
-            raise InvalidInput(f"{what}{error.what}", error.value, error.allowed) from None
+
+
+def made_of_kind(what: str, value: object, kinds: Mapping[str, type[Any]]) -> object:
+    """The object of a settings class that a table with its kind describes.
+
+    Args:
+        what: names the table in errors.
+        value: the table.
+        kinds: the classes by what a table names as its kind.
+
+    Raises:
+        InvalidInput: no such table.
+    """
+    if not isinstance(value, Mapping):
+        raise InvalidInput(what, value, "a table with a kind")
+    table = dict(value)
+    kind = one_of(f"{what}.kind", table.pop("kind", None), list(kinds))
+    try:
+        return from_mapping(kinds[kind], table)
+    except UnknownKey:
+        raise
+    except InvalidInput as error:
+        raise InvalidInput(f"{what}{error.what}", error.value, error.allowed) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ffsr_plan.bodies.body_motion import Poses
 from ffsr_plan.bodies.pace import Pace
 from ffsr_plan.collision.body_distances import BodyDistances
 from ffsr_plan.collision.coal_measures import iteration_error
@@ -12,7 +13,6 @@ from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.progress_lattice.progress_steps import ProgressSteps
 from ffsr_plan.proof.body_edge import BodyEdge
-from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify
 from ffsr_plan.proof.motion_edges import NominalPlacements
 from ffsr_plan.proof.moving_obstacles import POSE_ERROR, worse
@@ -42,7 +42,7 @@ class ProgressBodies:
         self._steps, self._bodies, self._pace, self._offsets = steps, scene.bodies, pace, offsets
         self._deadline = deadline
         motion = steps.motion
-        self._travel, self._placements = EdgeTravel(motion), NominalPlacements(motion)
+        self._travel, self._placements = steps.travel, NominalPlacements(motion)
         self._base_steps = motion.base_steps()
         scenes = scene.body_scenes
         self._queries = [ObstacleQuery(motion.robot, each, deadline) for each in scenes]
@@ -60,14 +60,15 @@ class ProgressBodies:
                 for body in self._bodies
             ]
         )
-        self.travel = np.concatenate([[0.0], np.cumsum(self._ways.max(axis=0))])
+        most = self._ways.max(axis=0) + max(self._roundings)
+        self.travel = np.concatenate([[0.0], np.cumsum(most)])
         placed = shape_placements(motion.robot, motion.configurations()[steps.corners])
         frames = Placements(np.tile(placed.frames, (len(times), 1, 1)))
-        every = np.repeat(times, len(steps.corners))  # the time of each layer for each place
-        self._seen = [
-            BodyDistances(motion.robot, body, query, frames, every)
-            for body, query in zip(self._bodies, self._queries, strict=True)
-        ]
+        every = np.repeat(np.arange(len(times)), len(steps.corners))  # the layer of each place
+        self._seen = []
+        for body, query in zip(self._bodies, self._queries, strict=True):
+            poses = Poses(*(each[every] for each in body.poses(times)))
+            self._seen.append(BodyDistances(motion.robot, query, frames, poses))
 
     @property
     def queries(self) -> int:

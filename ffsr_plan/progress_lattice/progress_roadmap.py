@@ -28,10 +28,12 @@ class ProgressRoadmap:
 
     Attributes:
         problem: what it was built from.
+        lattice: the offsets.
         steps: the steps of progress.
         offsets: (n, 3) of the base from the straight way [m].
         origin: number of the node without offset.
         heads: (n, W) offset that each step aside from each offset leads to; -1 for none.
+        edges: (A, D) edge of each step from each place; -1 where there is none, or links touch.
         edge_costs: (E, W) contribution of edges to F [length units].
         node_costs: (m + 1, A, n) contribution of nodes to F, or a lower bound; infinite where a
             node is blocked [length units].
@@ -45,7 +47,7 @@ class ProgressRoadmap:
         Raises:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
         """
-        self.problem, self._deadline = problem, deadline
+        self.problem = problem
         scene, m = problem.obstacles, problem.given_lattice.divisions
         self.steps, lattice = ProgressSteps(problem), LayeredLattice(problem)
         self._check_ends()
@@ -74,10 +76,6 @@ class ProgressRoadmap:
         self.node_costs = np.empty(self._bounds.shape)
         self._node_queries = self._prover.queries
         self._price(0, m + 1)
-
-    def clearances(self, path: IntArray) -> Array:
-        """(m + 1,) clearances at the nodes of a path (m + 1, 3) that have been learnt [m]."""
-        return self._bounds[np.arange(len(path)), path[:, 0], path[:, 1]]
 
     def learn(self, path: IntArray) -> int | None:
         """Evaluate the nodes of a path.
@@ -133,6 +131,15 @@ class ProgressRoadmap:
             self._note(self.moving[k, edges[k]], nodes[k], int(asides[k]), verdict)
             refused += [k] * (not verdict.free)
         return min(refused, default=None)
+
+    def is_proven(self, path: IntArray) -> bool:
+        """Whether every edge of a path (m + 1, 3) is known to be free."""
+        layers, (places, offsets, asides) = np.arange(len(path) - 1), path.T
+        edges = self.edges[places[:-1], np.diff(places) + self.steps.most]
+        free = self.at_rest[edges, offsets[:-1], asides[:-1]] == FREE
+        if self._bodies is not None:
+            free &= self.moving[layers, edges, offsets[:-1], asides[:-1]] == FREE
+        return bool(np.all(free))
 
     def counts(self) -> Counts:
         """Edges decided and queries spent so far."""

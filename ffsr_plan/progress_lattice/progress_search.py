@@ -16,11 +16,7 @@ from ffsr_plan.time_limit.deadline import Deadline
 
 
 class ProgressSearch:
-    """A search for the optimum that knows a lower bound at any time.
-
-    Attributes:
-        bound: F that no path of the lattice falls below [length units].
-    """
+    """A search for the optimum."""
 
     def __init__(self, roadmap: ProgressRoadmap, deadline: Deadline) -> None:
         """A search of a roadmap.
@@ -29,7 +25,7 @@ class ProgressSearch:
             roadmap: the lattice.
             deadline: after which the search raises `OutOfTime`.
         """
-        self._roadmap, self._deadline, self.bound = roadmap, deadline, 0.0
+        self._roadmap, self._deadline = roadmap, deadline
         shape = roadmap.node_costs.shape
         self._costs = np.full(shape, np.inf)
         self._costs[0] = np.where(np.isfinite(roadmap.node_costs[0]), 0.0, np.inf)
@@ -43,7 +39,7 @@ class ProgressSearch:
 
         Raises:
             NoPath: there is none.
-            OutOfTime: at the deadline; `bound` holds.
+            OutOfTime: at the deadline.
         """
         roadmap, first = self._roadmap, 0
         while True:
@@ -67,10 +63,8 @@ class ProgressSearch:
             first, roadmap.edges, roadmap.heads, roadmap.edge_costs, roadmap.node_costs,
             roadmap.at_rest, roadmap.moving, self._costs, self._before,
         )  # fmt: skip
-        least = float(self._costs[-1, steps.goal, roadmap.origin])
-        if not np.isfinite(least):
+        if not np.isfinite(self._costs[-1, steps.goal, roadmap.origin]):
             return None
-        self.bound = max(self.bound, least)
         path = np.empty((len(self._costs), 3), dtype=np.int64)
         trace(self._before, roadmap.heads.shape[1], steps.goal, roadmap.origin, path)
         return path

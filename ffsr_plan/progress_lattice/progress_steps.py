@@ -29,6 +29,7 @@ class ProgressSteps:
         edges: (A, D) edge of that motion that makes a step of -most .. most from each place; -1
             where there is none.
         lengths: (E,) length of each edge of the motion along the way [m].
+        most: places that a step goes at most.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -39,7 +40,7 @@ class ProgressSteps:
         """
         progress = problem.given_lattice.progress
         assert progress is not None
-        self._problem, self._steps, self.most = problem, progress.steps, progress.most
+        self.most = progress.most
         self.values: IntArray = np.arange(-progress.before, progress.steps + progress.beyond + 1)
         self.start, self.goal = progress.before, progress.before + progress.steps
         walk, edges = self._walk()
@@ -50,10 +51,15 @@ class ProgressSteps:
         self.lengths = frozen(edge_lengths(problem, places))
 
     @cached_property
+    def travel(self) -> EdgeTravel:
+        """Travel bounds along the edges of the motion."""
+        return EdgeTravel(self.motion)
+
+    @cached_property
     def between(self) -> Array:
         """(A, A) bound on the travel of any point of the robot from place to place [m]."""
         along = np.linalg.norm(self.motion.base_steps(), axis=1)
-        travel = along + EdgeTravel(self.motion).speeds
+        travel = along + self.travel.speeds + self.travel.attitude_error
         way = np.concatenate([[0.0], np.cumsum(travel[self.edges[:-1, self.most + 1]])])
         return np.abs(way[:, None] - way[None])
 

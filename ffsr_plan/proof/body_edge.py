@@ -104,4 +104,5 @@ class BodyEdge:
         tail, head = self._offsets
         frames = self._placements.at(time).frames[self._layer : self._layer + 1]
         shift = (1.0 - time) * tail + time * head
-        return in_axes(Placements(frames), self._body, np.array([self.instant(time)]), shift[None])
+        poses = self._body.poses([self.instant(time)])
+        return in_axes(Placements(frames), poses, shift[None])

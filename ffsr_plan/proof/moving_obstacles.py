@@ -169,7 +169,8 @@ class MovingObstacles:
         instant = self._pace.instants(np.array([layer + time]))
         pairs = []
         for b, query in enumerate(self._queries):
-            seen = in_axes(Placements(frames), self._bodies[b], instant, shift[None])
+            poses = self._bodies[b].poses(instant)
+            seen = in_axes(Placements(frames), poses, shift[None])
             pairs.append(query.nearest_at(seen, 0, np.zeros(3))._replace(obstacle=self._first + b))
         return min(pairs, key=lambda pair: pair.distance)
 
@@ -189,10 +190,8 @@ class MovingObstacles:
             if parts:
                 places = np.add.outer(odd_times(parts), places[:-1]).ravel()
                 placed = self._placements.between(parts)
-            times = self._pace.instants(places)
-            self._seen[b, parts] = BodyDistances(
-                self._robot, self._bodies[b], self._queries[b], placed, times
-            )
+            poses = self._bodies[b].poses(self._pace.instants(places))
+            self._seen[b, parts] = BodyDistances(self._robot, self._queries[b], placed, poses)
         return self._seen[b, parts]
 
 

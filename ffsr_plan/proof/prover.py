@@ -75,15 +75,15 @@ class Prover:
         self._motion, self._scene, self.tolerance, self._pace = nominal, scene, tolerance, pace
         self._deadline = deadline or Deadline()
         self._deadline.check()
-        fixed = scene if pace is None else scene.at_rest
-        self._obstacles = ObstacleQuery(nominal.robot, fixed, deadline)
+        self._fixed = scene if pace is None else scene.at_rest
+        self._obstacles = ObstacleQuery(nominal.robot, self._fixed, deadline)
         self._travel, self._steps = EdgeTravel(nominal), nominal.base_steps()
         self.links = LinkProof(nominal, self._travel, tolerance, self._deadline)
         self._placements = NominalPlacements(nominal)
         self._corners = shape_placements(nominal.robot, nominal.configurations())
         self.speeds = self._own_speeds = self._travel.speeds
         rounding = ROUNDING + self._travel.attitude_error
-        iterated = iteration_error(nominal.robot, fixed)
+        iterated = iteration_error(nominal.robot, self._fixed)
         self._exact = iterated == 0.0
         self.rounding = self._rounding = rounding + iterated
         self._moving: MovingObstacles | None = None
@@ -265,8 +265,7 @@ class Prover:
         """The motion among the obstacles for kernels; None where there are none."""
         if self._obstacles.empty:
             return None
-        fixed = self._scene if self._pace is None else self._scene.at_rest
-        return course_of(self._motion, fixed, self._travel)
+        return course_of(self._motion, self._fixed, self._travel)
 
     @cached_property
     def _memory(self) -> Memory:

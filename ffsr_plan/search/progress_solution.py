@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from ffsr_plan.core.arrays import frozen
@@ -40,16 +38,14 @@ def solve_with_progress(problem: Problem, request: SearchRequest) -> Solution:
     check_lattice(problem)
     roadmap = ProgressRoadmap(problem, deadline)
     path = ProgressSearch(roadmap, deadline).path()
+    if not roadmap.is_proven(path):
+        raise InternalError("a path whose edges are not all proven free")
     request.begin()
     progress, offsets = roadmap.steps.values[path[:, 0]], roadmap.offsets[path[:, 1]]
     motion, m = motion_at(problem, progress, offsets), len(path) - 1
     prover = Prover(motion, problem.obstacles, problem.tolerance, deadline, problem.pace(m))
-    still, layers = np.zeros((m + 1, 3)), np.arange(m + 1)
-    clearances = prover.clearances(layers, still)
-    ends = np.array([*pairwise(clearances)])
-    verdicts = prover.certify_all(layers[:-1], still[:-1], still[1:], ends)
-    if not all(verdict.free for verdict in verdicts):
-        raise InternalError("a path of proven edges is not proven as one motion")
+    still = np.zeros((m + 1, 3))
+    clearances = prover.clearances(np.arange(m + 1), still)
     across = np.sum((np.diff(offsets, axis=0) * problem.position_weight) ** 2, axis=1)
     length = float(np.sum(np.sqrt(edge_lengths(problem, progress) ** 2 + across)))
     value = objective(problem, length, clearances)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ffsr_plan.collision.body_distances import in_axes
+from ffsr_plan.collision.body_distances import BodyDistances
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput
@@ -55,10 +55,10 @@ def body_distances(frames: MotionFrames, scene: Scene, times: Array | None) -> l
         raise InvalidInput("times", None, "a time [s] of each frame, as bodies of the scene move")
     rows, still = np.arange(len(times)), np.zeros((len(times), 3))
     found = []
-    for body in scene.bodies:
-        query = ObstacleQuery(frames.robot, Scene(shapes=body.shapes, growth=scene.growth))
-        seen = in_axes(frames.placements, body, times, still)
-        found.append(query.distances_at(seen, rows, still))
+    for body, own in zip(scene.bodies, scene.body_scenes, strict=True):
+        query, poses = ObstacleQuery(frames.robot, own), body.poses(times)
+        seen = BodyDistances(frames.robot, query, frames.placements, poses)
+        found.append(seen.distances(rows, still))
     return found
 
 
