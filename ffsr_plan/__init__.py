@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ffsr_plan import errors
     from ffsr_plan.bodies.body_motion import Drift, Poses, Spin
+    from ffsr_plan.bodies.debris.debris_cloud import DebrisCloud
     from ffsr_plan.bodies.moving_body import MovingBody
     from ffsr_plan.bodies.pace import Pace
     from ffsr_plan.bodies.pose_function import PoseFunction
@@ -130,6 +131,7 @@ __all__ = [
     "CurvedMotion",
     "Cycle",
     "Cylinder",
+    "DebrisCloud",
     "Drift",
     "EdgeProof",
     "Ellipsoid",
@@ -227,6 +229,7 @@ __all__ = [
 
 _NAMES = {  # by module; each is loaded when one of its names is first used
     "bodies.body_motion": ("Drift", "Poses", "Spin"),
+    "bodies.debris.debris_cloud": ("DebrisCloud",),
     "bodies.moving_body": ("MovingBody",),
     "bodies.pace": ("Pace",),
     "bodies.pose_function": ("PoseFunction",),

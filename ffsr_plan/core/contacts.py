@@ -29,6 +29,12 @@ class ZoneName(ShapeName):
     __slots__ = ()
 
 
+class CloudName(str):
+    """The name of a cloud of spheres, which are counted within it and not within the scene."""
+
+    __slots__ = ()
+
+
 class Contact(NamedTuple):
     """Two bodies that touch, or come too close.
 

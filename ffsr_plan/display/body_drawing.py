@@ -1,4 +1,4 @@
-"""Bodies that move, drawn flat at several times, from light to dark."""
+"""Bodies and debris that move, drawn flat at several times, from light to dark."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ import numpy as np
 
 from ffsr_plan.display.figure_style import MOVING_LABEL, Style
 from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_mesh, points_near
+from ffsr_plan.display.scenes.debris_track import DebrisTrack
 from ffsr_plan.display.scenes.shape_outlines import outline_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.collections import EllipseCollection
 
     from ffsr_plan.core.arrays import Array
 
@@ -167,6 +169,56 @@ def draw_bodies(
     _write_labels(ax, tracks, rows, view, colour, robot)
     text = fill(legend_text(style, tracks[0].times[list(rows)]), widest)
     ax.plot([], [], "s", ms=7, color=colour, label=text)
+
+
+def draw_debris(
+    ax: Axes, debris: DebrisTrack, rows: Sequence[int], view: Array, style: Style, widest: int = 60
+) -> None:
+    """Outlines of debris in some frames, from light to dark, and an entry in the legend.
+
+    Limits of the axes do not grow: debris may be everywhere.
+
+    Args:
+        ax: the axes.
+        debris: the spheres.
+        rows: the frames, rising.
+        view: (2, 3) directions to the right and upwards.
+        style: has `bodies`.
+        widest: letters of a line in the legend.
+    """
+    if not debris:
+        return
+    colour = style.colour("bodies")
+    for k, (row, shade) in enumerate(zip(rows, shades(colour, len(rows)), strict=True)):
+        ax.add_collection(discs(ax, debris, row, view, shade, 2.8 + 0.01 * k), autolim=False)
+    known = ax.get_legend_handles_labels()[1]
+    text = fill(legend_text(style, debris.times[list(rows)]), widest)
+    if text not in known:
+        ax.plot([], [], "s", ms=7, color=colour, label=text)
+
+
+def discs(
+    ax: Axes, debris: DebrisTrack, row: int, view: Array, colour: object, zorder: float
+) -> EllipseCollection:
+    """The spheres of debris in a frame, seen along a direction, those in front last.
+
+    Args:
+        ax: axes that will show them.
+        debris: the spheres.
+        row: the frame.
+        view: (2, 3) directions to the right and upwards.
+        colour: of them.
+        zorder: of them.
+    """
+    from matplotlib.collections import EllipseCollection
+
+    centers = debris.centers(row)
+    order = np.argsort(centers @ np.cross(view[0], view[1]), kind="stable")
+    sizes = 2.0 * debris.radii[order]
+    return EllipseCollection(
+        sizes, sizes, np.zeros(len(sizes)), units="xy", offsets=centers[order] @ view.T,
+        offset_transform=ax.transData, facecolor=colour, edgecolor="none", alpha=0.75, zorder=zorder,
+    )  # fmt: skip
 
 
 def _write_labels(

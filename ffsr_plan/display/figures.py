@@ -11,7 +11,7 @@ from ffsr_plan.core.checks import one_of, whole_number
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.text_files import write_files
 from ffsr_plan.display import figure_style
-from ffsr_plan.display.body_drawing import chosen_rows, draw_bodies, write_times
+from ffsr_plan.display.body_drawing import chosen_rows, draw_bodies, draw_debris, write_times
 from ffsr_plan.display.figure_style import Named, Style, axes_or_new, figure_bytes, fit_height
 from ffsr_plan.display.path_drawing import (
     draw_named_zones,
@@ -21,6 +21,7 @@ from ffsr_plan.display.path_drawing import (
     name_directions,
 )
 from ffsr_plan.display.scenes.body_tracks import body_tracks
+from ffsr_plan.display.scenes.debris_track import debris_track
 from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames, trail_segments
 from ffsr_plan.display.scenes.plan_samples import sample_plan, times_of
 from ffsr_plan.display.scenes.projection import VIEWS, view_axes
@@ -99,10 +100,14 @@ def path_figure(
     problem, scene = plan.problem, plan.problem.scene
     samples = sample_plan(plan, _SAMPLES)
     track, bodies = samples.frames, body_tracks(scene, samples.times)
+    debris = debris_track(scene, samples.times)
     rows = np.linspace(0.0, _SAMPLES - 1.0, count).round().astype(int).tolist()
     solid = drawn_solid(scene, track.bounding_spheres()[0])
     if one_of("view", view, (*VIEWS, "3d")) == "3d":
-        return spatial_figure(problem, track, rows, solid, style, ax, _path_title(plan), bodies)
+        return spatial_figure(
+            problem, track, rows, solid, style, ax, _path_title(plan), bodies,
+            debris,
+        )  # fmt: skip
     axes = view_axes(problem)[list(VIEWS[view])]
     own_figure = ax is None
     figure, ax = axes_or_new(ax, 9.0, 4.6)
@@ -112,15 +117,16 @@ def path_figure(
     across = track.origins[:, 0] @ axes[:2].T
     ax.plot(*across.T, color=style.colour("path"), lw=1.8, zorder=6, label=style.label("path"))
     mark_ends(ax, style)
-    if samples.times is not None and bodies:
+    if samples.times is not None and scene.moves:
         times = write_times(ax, across, chosen_rows(rows), samples.times)
         draw_bodies(ax, bodies, chosen_rows(rows), axes[:2], style, times)
+        draw_debris(ax, debris, chosen_rows(rows), axes[:2], style)
     if not solid.all():
         _name_faint(ax, style)
     name_directions(ax, problem, view, _leaves_plane(plan))
     draw_named_zones(ax, problem, axes, style)
     ax.set_title(_path_title(plan))
-    _add_legend(figure, ax, own_figure, 4 if bodies else 5)
+    _add_legend(figure, ax, own_figure, 4 if scene.moves else 5)
     return figure
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_tracks, key_rows
+from ffsr_plan.display.scenes.debris_track import debris_track
 from ffsr_plan.display.scenes.meshcat_objects import CommandLog, MeshcatNode
 from ffsr_plan.display.scenes.picture_data import (
     MotionFrames,
@@ -21,6 +22,7 @@ from ffsr_plan.display.scenes.scene_objects import (
     TIPS,
     TRACK,
     add_bodies,
+    add_debris,
     add_ends,
     add_obstacles,
     add_track,
@@ -122,10 +124,12 @@ def motion_page(played: PlayedMotion) -> str:
     problem, frames, plan = played.problem, played.frames, played.plan
     centers, radii = frames.bounding_spheres()
     tracks = body_tracks(problem.scene, played.times)
-    view = set_up(viewer, problem, centers, radii, tracks)
+    debris = debris_track(problem.scene, played.times)
+    view = set_up(viewer, problem, centers, radii, tracks, debris)
     solid = drawn_solid(problem.scene, centers)
     add_obstacles(viewer["obstacles"], problem.scene, solid)
     add_bodies(viewer["bodies"], tracks, view_axes(problem)[2])
+    add_debris(viewer["bodies"]["debris"], debris)
     add_zones(viewer["zones"], problem.scene, centers, radii)
     start, goal = frames.configurations[[0, -1]]
     add_ends(viewer, problem.robot, start, goal, played.shapes)
@@ -145,7 +149,8 @@ def motion_page(played: PlayedMotion) -> str:
             *_zone_names(problem.scene, centers, radii),
             *_body_names(tracks),
         ],
-        "bodies": nearest_passes(frames, problem.obstacles, tracks),
+        "bodies": nearest_passes(frames, problem.obstacles, tracks, debris),
+        "drifts": (np.ptp(debris.times) * debris.velocities).round(4).tolist(),
         "view": view,
         "ants": ants,
         "playing": played.playing,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ffsr_plan.display.body_drawing import discs
 from ffsr_plan.display.movie_obstacles import (
     DASHES,
     MOVING,
@@ -21,6 +22,7 @@ from ffsr_plan.display.movie_obstacles import (
 )
 from ffsr_plan.display.path_drawing import draw_zones
 from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_tracks, points_near
+from ffsr_plan.display.scenes.debris_track import DebrisTrack, debris_track
 from ffsr_plan.display.scenes.picture_data import MotionFrames, drawn_solid
 from ffsr_plan.display.scenes.projection import Outline, outlines, visible_shapes
 from ffsr_plan.display.scenes.scene_objects import TIPS, TRACK, glow
@@ -139,6 +141,7 @@ def pictures(scene: MovingScene, width: int) -> list[Image.Image]:
     from PIL import Image
 
     bodies = body_tracks(scene.problem.scene, scene.times)
+    debris = debris_track(scene.problem.scene, scene.times)
     figure, main, close_up, curves = _figure(scene, bodies, width)
     canvas: Any = FigureCanvasAgg(figure)  # its methods have no types
     _draw_surroundings(main, scene)
@@ -150,6 +153,7 @@ def pictures(scene: MovingScene, width: int) -> list[Image.Image]:
     for row in range(len(scene.robot)):
         canvas.restore_region(background)
         artists = [
+            *_debris_artists(main, scene, debris, row),
             *_body_artists(main, scene, bodies, row),
             *_track_artists(main, scene, row),
             _robot_artist(main, scene, row),
@@ -274,6 +278,15 @@ def _body_artists(
     for shape in shapes:
         drawn += shaded_shape(axes, shape, scene.axes, ring, MOVING)
     return drawn
+
+
+def _debris_artists(axes: Axes, scene: MovingScene, debris: DebrisTrack, row: int) -> list[Artist]:
+    """Debris where it is in a frame."""
+    if not debris:
+        return []
+    drawn = discs(axes, debris, row, scene.axes[:2], MOVING, 2.0)
+    axes.add_collection(drawn, autolim=False)
+    return [drawn]
 
 
 def _track_artists(axes: Axes, scene: MovingScene, row: int) -> list[Artist]:

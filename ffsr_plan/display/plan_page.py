@@ -56,7 +56,7 @@ def page(plan: PlanData, title: str = "", *, playing: bool = False, shapes: str 
     """
     problem = plan.problem
     count = _frame_count(plan)
-    moving = len(problem.scene.bodies)
+    moving = len(problem.scene.moving)
     size = {"frames": count, "joints and bodies": problem.robot.nd + 1 + moving}
     check_memory("page", size, BYTES_PER_POSE, "a plan with fewer divisions")
     samples = sample_plan(plan, count)

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
     from ffsr_plan.core.arrays import Array, Flags
     from ffsr_plan.display.figure_style import Style
+    from ffsr_plan.display.scenes.debris_track import DebrisTrack
     from ffsr_plan.display.scenes.picture_data import MotionFrames
     from ffsr_plan.problem.problem import Problem
     from ffsr_plan.scene.shapes.keep_in_zones import Zone
@@ -78,6 +79,18 @@ class _Faces(NamedTuple):
             for shape in (shape for track in tracks for shape in track.shapes(row)):
                 self.add(_shape(shape), to_hex(shade), 0.8)
 
+    def add_debris(
+        self, debris: DebrisTrack, rows: Sequence[int], limits: tuple[Array, Array], colour: str
+    ) -> None:
+        """Add debris between limits (3,) as it is in some frames, from light to dark."""
+        from matplotlib.colors import to_hex
+
+        for row, shade in zip(rows, shades(colour, len(rows)), strict=True):
+            centers = debris.centers(row)
+            near = np.all((centers > limits[0]) & (centers < limits[1]), axis=1)
+            for center, radius in zip(centers[near], debris.radii[near], strict=True):
+                self.add(center + radius * _ball(6), to_hex(shade), 0.8)
+
     def add_bright(self, polygons: Array, colour: str) -> None:
         """Add faces (n, k, 3) of one colour that light does not change."""
         from matplotlib.colors import to_rgba
@@ -95,6 +108,7 @@ def spatial_figure(
     ax: Axes | None = None,
     title: str = "",
     bodies: Sequence[BodyTrack] = (),
+    debris: DebrisTrack | None = None,
 ) -> Figure:
     """Obstacles, the robot at several times and the track of its base in perspective.
 
@@ -107,6 +121,7 @@ def spatial_figure(
         ax: axes to draw on, with `projection="3d"`; by default those of a new figure.
         title: of the figure.
         bodies: those that move, drawn at up to five of the times of the rows.
+        debris: likewise, where it is near all else.
 
     Raises:
         InvalidInput: axes that are not in 3-D.
@@ -126,6 +141,8 @@ def spatial_figure(
     cloud = np.vstack([cloud, points_near(bodies, cloud, np.eye(3))])
     faces.add_bodies(bodies, chosen_rows(rows), style.colour("bodies"))
     low, high = cloud.min(axis=0), cloud.max(axis=0)
+    if debris:
+        faces.add_debris(debris, chosen_rows(rows), (low, high), style.colour("bodies"))
     track = frames.origins[:, 0]
     faces.add_bright(_tube(track, _TRACK_WIDTH * float(np.max(high - low))), style.colour("path"))
     _draw(ax3, faces)
@@ -138,11 +155,12 @@ def spatial_figure(
         for label in labels(scene):
             x, y, z = *label.at[:2], label.top + 0.02 * float(np.max(high - low))
             ax3.text(x, y, z, label.text, ha="center", fontsize=8)
-    if bodies:
-        _write_times(ax3, bodies, frames, chosen_rows(rows), (low, high), style)
+    if bodies or debris:
+        times = bodies[0].times if bodies else np.asarray(debris.times if debris else ())
+        _write_times(ax3, times, bodies, frames, chosen_rows(rows), (low, high), style)
     _set_view(ax3, problem, low, high)
     _draw_zones(ax3, scene.keep_in, low, high, style)
-    columns = 4 if scene.keep_in or bodies else 3
+    columns = 4 if scene.keep_in or scene.moves else 3
     ax3.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, 0.02), ncols=columns)
     ax3.set_title(title)
     return figure
@@ -150,6 +168,7 @@ def spatial_figure(
 
 def _write_times(
     ax: Any,  # noqa: ANN401 - axes in 3-D have no types
+    times: Array,
     bodies: Sequence[BodyTrack],
     frames: MotionFrames,
     rows: Sequence[int],
@@ -157,11 +176,11 @@ def _write_times(
     style: Style,
 ) -> None:
     """Times of the robot, and in their colour those of few bodies, and an entry in the legend."""
-    legend = legend_text(style, bodies[0].times[list(rows)])
+    legend = legend_text(style, times[list(rows)])
     ax.plot([], [], "s", ms=7, color=style.colour("bodies"), label=legend)
     size = float(np.max(limits[1] - limits[0]))
     box = {"boxstyle": "round,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.7}
-    times, origins = bodies[0].times, frames.origins[:, 0]
+    origins = frames.origins[:, 0]
     written = [(f"{times[row]:.3g} s", origins[row], "black") for row in rows]
     for track in bodies if len(bodies) <= MOST_LABELLED else ():
         labelled = timed_labels(track, rows, np.eye(3), size)

@@ -83,7 +83,7 @@ class LeastFuel:
             allowed = "a mode with thrusters, free-flying or attitude-held: no fuel is burnt here"
         elif not lattice.axes:
             allowed = "a base that moves, and a lattice with a lateral or normal axis"
-        elif problem.scene.bodies:
+        elif problem.scene.moves:
             allowed = (
                 "a scene at rest: its curves have no pace at which bodies that move are passed"
             )

@@ -16,9 +16,9 @@ def refuse_another_pace(what: str, problem: Problem) -> None:
     Raises:
         InvalidInput: bodies move, and the plan is proven at its own pace alone.
     """
-    if problem.scene.bodies:
+    if problem.scene.moves:
         allowed = (
             f"a scene at rest for {what}, which has a pace of its own; past bodies that move a "
             "plan is proven at its own pace alone, of which to_csv writes the times"
         )
-        raise InvalidInput("scene bodies", list(problem.scene.bodies), allowed)
+        raise InvalidInput("scene bodies", list(problem.scene.moving), allowed)

@@ -1,7 +1,8 @@
-"""Moving bodies in plan files: tables of their shapes, their motion and their pose."""
+"""Moving bodies and debris in plan files: tables of shapes, motions and poses, and of spheres."""
 
 from __future__ import annotations
 
+from base64 import b64decode, b64encode
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
@@ -9,10 +10,12 @@ from typing import Annotated, Any
 import numpy as np
 
 from ffsr_plan.bodies.body_motion import BodyMotion, Drift, Spin
+from ffsr_plan.bodies.debris.debris_cloud import DebrisCloud
 from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.bodies.pose_function import PoseFunction
 from ffsr_plan.bodies.track import Track
 from ffsr_plan.bodies.tumble import Tumble
+from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Rule
 from ffsr_plan.core.settings import setting, settings
@@ -29,8 +32,8 @@ MOTION_KINDS: dict[str, type[Any]] = {
 """The classes of motions that a file can hold, by their words."""
 
 
-def body_entries(scene: Scene) -> list[dict[str, Any]]:
-    """The moving bodies in plain Python values.
+def moving_entries(scene: Scene) -> dict[str, Any]:
+    """Moving bodies and debris in plain Python values; what a scene lacks is left out.
 
     Args:
         scene: the obstacles.
@@ -38,7 +41,19 @@ def body_entries(scene: Scene) -> list[dict[str, Any]]:
     Raises:
         InvalidInput: a motion that is a function, which no file can hold.
     """
-    return [_entry(f"scene bodies.{k}", body) for k, body in enumerate(scene.bodies)]
+    entries: dict[str, Any] = {}
+    if scene.bodies:
+        named = enumerate(scene.bodies)
+        entries["bodies"] = [_entry(f"scene bodies.{k}", body) for k, body in named]
+    if scene.debris:
+        entries["debris"] = [_cloud_entry(cloud) for cloud in scene.debris]
+    return entries
+
+
+def _cloud_entry(cloud: DebrisCloud) -> dict[str, Any]:
+    """A cloud, its numbers as they are in memory: a list would take three times as much room."""
+    table = np.column_stack([cloud.centers, cloud.radii, cloud.velocities]).astype("<f8")
+    return {"name": cloud.name, "spheres": b64encode(table.tobytes()).decode("ascii")}
 
 
 def _entry(what: str, body: MovingBody) -> dict[str, Any]:
@@ -83,3 +98,30 @@ class BodyTable:
     def body(self) -> MovingBody:
         """The body."""
         return MovingBody(self.shapes, self.motion, self.position, self.attitude, self.name)
+
+
+@dataclass(frozen=True)
+class DriftingSpheres(Rule):
+    """Centre, radius and velocity of each sphere: binary64, little-endian, in base 64."""
+
+    def check(self, what: str, value: object, others: Mapping[str, Any]) -> Array:
+        """See `Rule.check`."""
+        allowed = "rows of seven numbers in base 64"
+        try:
+            found = np.frombuffer(b64decode(str(value), validate=True), "<f8").reshape(-1, 7)
+        except ValueError:
+            raise InvalidInput(what, value, allowed) from None
+        return frozen(found.astype(np.float64))
+
+
+@settings
+class DebrisTable:
+    """A cloud of debris."""
+
+    spheres: Annotated[Any, DriftingSpheres()]
+    name: Name = ""
+
+    def cloud(self) -> DebrisCloud:
+        """The cloud."""
+        centers, radii, velocities = np.split(self.spheres, [3, 4], axis=1)
+        return DebrisCloud(centers, radii[:, 0], velocities, self.name)

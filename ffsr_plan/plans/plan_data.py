@@ -123,7 +123,7 @@ class PlanData:
         The robot is then where it was proven free, and no body has come nearer than it can move in
         that time. Infinite where nothing moves.
         """
-        fastest = max((body.speed for body in self.problem.scene.bodies), default=0.0)
+        fastest = max((each.speed for each in self.problem.scene.moving), default=0.0)
         return self.certificate.least_clearance / fastest if fastest > 0.0 else np.inf
 
     @property

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import read_text, write_text
-from ffsr_plan.plans.body_entries import body_entries
+from ffsr_plan.plans.body_entries import moving_entries
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.plans.plan_reading import PLAIN, plan_of
 from ffsr_plan.plans.plan_tables import FORMAT
@@ -21,7 +21,6 @@ from ffsr_plan.plans.planner_registry import planner_table
 from ffsr_plan.plans.robot_table import robot_table
 from ffsr_plan.plans.shape_entries import shape_entries
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.records import Branches, Trails
 
 _LARGEST_FILE = 500_000_000  # [bytes]; reading takes about ten times as much memory
@@ -43,7 +42,7 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
                 "excess": problem.scene.excess,
                 "sources": [list(source) for source in problem.scene.sources],
                 **shape_entries(problem.scene),
-                **_bodies(problem.scene),
+                **moving_entries(problem.scene),
             },
             "start": problem.start.tolist(),
             "goal": problem.goal.tolist(),
@@ -83,10 +82,6 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
         "seconds": plan.seconds,
         **({} if plan.fuel is None else {"fuel": plan.fuel._asdict()}),
     }
-
-
-def _bodies(scene: Scene) -> dict[str, Any]:
-    return {"bodies": body_entries(scene)} if scene.bodies else {}
 
 
 def _pace(problem: Problem) -> dict[str, Any]:

@@ -139,6 +139,7 @@ def _problem(what: str, table: ProblemTable) -> Problem:
             scene.keep_in,
             scene.growth,
             [body.body() for body in scene.bodies],
+            [cloud.cloud() for cloud in scene.debris],
         ),
     )
     return _within(

@@ -17,7 +17,7 @@ from ffsr_plan.core.checks import one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, OneOf, Rule, Text, Truth, WholeNumber
 from ffsr_plan.core.settings import from_mapping, settings
-from ffsr_plan.plans.body_entries import BodyTable
+from ffsr_plan.plans.body_entries import BodyTable, DebrisTable
 from ffsr_plan.plans.planner_registry import PLANNERS, Planner
 from ffsr_plan.plans.shape_entries import ZONE_KINDS, Bodies
 from ffsr_plan.problem.lattice_settings import Lattice
@@ -168,6 +168,7 @@ class SceneTable:
     keep_in: Annotated[Any, Bodies(ZONE_KINDS)] = ()
     growth: Annotated[float, Number(at_least=0.0)] = 0.0
     bodies: tuple[BodyTable, ...] = ()
+    debris: tuple[DebrisTable, ...] = ()
 
 
 @settings

@@ -31,7 +31,7 @@ def shape_entries(scene: Scene) -> dict[str, Any]:
         entries["shapes"] = [plain_entry(shape) for shape in scene.shapes]
     if scene.keep_in:
         entries["keep_in"] = [plain_entry(zone) for zone in scene.keep_in]
-    if entries and scene.growth > 0.0:
+    if (entries or scene.moves) and scene.growth > 0.0:
         entries["growth"] = scene.growth
     return entries
 

@@ -26,7 +26,7 @@ def against_obstacles(problem: Problem, ends: tuple[float, float]) -> tuple[str,
     if near:
         return tuple(near)
     advice = [*_offsets(problem)]
-    if problem.scene.bodies:
+    if problem.scene.moves:
         advice.append("lattice.progress, with which the robot can wait; another duration or ramp")
     if problem.given_lattice.axes:
         advice.append(f"more than {problem.given_lattice.divisions} divisions")

@@ -69,7 +69,7 @@ def _check_progress(problem: Problem, progress: Progress, layers: int, nodes: in
     places = progress.before + progress.steps + progress.beyond + 1
     shapes = int(problem.robot.collision_model.ngeoms)
     moves = (2 * progress.most + 1) * (2 * progress.aside + 1) ** axes
-    each = 40.0 + moves * bool(bodies) + 240.0 * shapes * bodies / nodes
+    each = 40.0 + moves * problem.scene.moves + 240.0 * shapes * bodies / nodes
     fixed = places * (2 * progress.most + 2) * (_BYTES_PER_LAYER + _BYTES_PER_SHAPE * shapes)
     fixed += BYTES_PER_PAIR_OF_OFFSETS * nodes**2 + moves * places * nodes
     counts = {"layers": layers, "places": places, "nodes": nodes}

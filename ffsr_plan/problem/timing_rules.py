@@ -18,7 +18,7 @@ def check_duration(scene: Scene, duration: float | None, ramp: float) -> None:
         ramp: of the problem.
     """
     if duration is None:
-        if scene.bodies:
+        if scene.moves:
             raise InvalidInput("duration", None, "a time [s], as bodies of the scene move")
         if ramp != 0.0:
             raise InvalidInput("ramp", ramp, "0 without a duration")

@@ -1,4 +1,4 @@
-"""Bodies that move, as the nodes and edges of a lattice with progress meet them."""
+"""Bodies and debris, as the nodes and edges of a lattice with progress meet them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.progress_lattice.progress_steps import ProgressSteps
-from ffsr_plan.proof.body_edge import BodyEdge
+from ffsr_plan.proof.body_edge import BodyEdge, DebrisProof, Passages
 from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify
 from ffsr_plan.proof.motion_edges import NominalPlacements
 from ffsr_plan.proof.moving_obstacles import POSE_ERROR, worse
@@ -21,10 +21,10 @@ from ffsr_plan.time_limit.deadline import Deadline
 
 
 class ProgressBodies:
-    """Clearances from the moving bodies of a scene, and proofs past them.
+    """Clearances from the moving bodies and the debris of a scene, and proofs past them.
 
     Attributes:
-        travel: (m + 1,) that any body has travelled up to each layer, at most [m].
+        travel: (m + 1,) that any of them has travelled up to each layer, at most [m].
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class ProgressBodies:
 
         Args:
             steps: the steps of progress.
-            scene: the obstacles, of which the bodies count here.
+            scene: the obstacles, of which what moves counts here.
             pace: of the layers.
             offsets: (n, 3) of the nodes [m].
             deadline: after which measurements raise `OutOfTime`.
@@ -59,11 +59,22 @@ class ProgressBodies:
                 [body.travel(*times[k : k + 2].tolist()) for k in range(pace.edges)]
                 for body in self._bodies
             ]
+        ).reshape(-1, pace.edges)
+        longest = [own + more for own, more in zip(self._ways, self._roundings, strict=True)]
+        self._debris: DebrisProof | None = None
+        if scene.debris:
+            own = ROUNDING + self._travel.attitude_error
+            self._debris = DebrisProof(
+                motion.robot, scene, pace, self._travel, self._placements, own, deadline
+            )
+            longest.append(self._debris.travel + self._debris.rounding)
+        self.travel = np.concatenate([[0.0], np.cumsum(np.max(longest, axis=0))])
+        self._times = times
+        self._placed = placed = shape_placements(
+            motion.robot, motion.configurations()[steps.corners]
         )
-        most = self._ways.max(axis=0) + max(self._roundings)
-        self.travel = np.concatenate([[0.0], np.cumsum(most)])
-        placed = shape_placements(motion.robot, motion.configurations()[steps.corners])
-        frames = Placements(np.tile(placed.frames, (len(times), 1, 1)))
+        copies = len(times) if self._bodies else 1
+        frames = Placements(np.tile(placed.frames, (copies, 1, 1)))
         every = np.repeat(np.arange(len(times)), len(steps.corners))  # the layer of each place
         self._seen = []
         for body, query in zip(self._bodies, self._queries, strict=True):
@@ -73,10 +84,11 @@ class ProgressBodies:
     @property
     def queries(self) -> int:
         """Number of Coal queries so far."""
-        return sum(query.count for query in self._queries)
+        debris = 0 if self._debris is None else self._debris.distances.count
+        return debris + sum(query.count for query in self._queries)
 
     def least(self, layers: IntArray, places: IntArray, offsets: IntArray, others: Array) -> Array:
-        """The lesser of the nodes' distances to all bodies, at their times, and of others.
+        """The lesser of the nodes' distances to all that moves, at their times, and of others.
 
         Args:
             layers: (k,) layers.
@@ -90,12 +102,15 @@ class ProgressBodies:
         rows = self._rows(layers, places)
         for seen in self._seen:
             others = seen.least(rows, self._offsets[offsets], others)
+        if self._debris is not None:
+            at = self._offsets[offsets], self._times[layers], np.zeros(len(layers))
+            others = self._debris.distances.least(self._placed, places, *at, others)
         return others
 
     def certify(
         self, layers: IntArray, places: IntArray, offsets: IntArray, tolerance: float
     ) -> list[Verdict]:
-        """Prove that no body touches the robot on edges, or refuse them.
+        """Prove that nothing that moves touches the robot on edges, or refuse them.
 
         Args:
             layers: (k,) layers that they leave.
@@ -124,6 +139,10 @@ class ProgressBodies:
                     )  # fmt: skip
                     found = certify(edge, ends, tolerance)
                 verdicts[k] = worse(verdicts[k], found)
+        if self._debris is not None:
+            run = Passages(edges, layers, tails, heads, moved, places)
+            past = self._debris.certify(self._placed, run, tolerance)
+            verdicts = [worse(*pair) for pair in zip(verdicts, past, strict=True)]
         return verdicts
 
     def _rows(self, layers: IntArray, places: IntArray) -> IntArray:

@@ -66,7 +66,7 @@ class ProgressRoadmap:
         self.at_rest: States = np.zeros(shape, dtype=np.int8)
         self._bodies: ProgressBodies | None = None
         pace = problem.pace(m)
-        if scene.bodies and pace is not None:
+        if scene.moves and pace is not None:
             self._bodies = ProgressBodies(self.steps, scene, pace, self.offsets, deadline)
         moving = m if self._bodies else 0
         self.moving: States = np.zeros((moving, *shape), dtype=np.int8)

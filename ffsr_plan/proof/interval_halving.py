@@ -40,11 +40,15 @@ class Edge(Protocol):
     def clearance(self, time: float) -> float:
         """Least distance over all parts, computed by Coal [m]."""
 
-    def parts(self, time: float) -> Array:
-        """(p,) lower bound on the distance of each part [m]."""
-
     def travel(self, begin: float, end: float) -> Array:
         """(p,) upper bound on the travel of each part between two times [m]."""
+
+    def margins(self, begin: float, end: float, ways: Array) -> Array:
+        """(p,) by how much the distances of each part at two times exceed its travel [m].
+
+        With d of them, no part is nearer than half of the least d in between. `ways` (p,) is what
+        `travel` says of the interval, the rounding included.
+        """
 
 
 class Verdict(NamedTuple):
@@ -149,5 +153,5 @@ def _proven(
     bound = 0.5 * (first + last - travel)
     if bound > enough:
         return bound, travel
-    margins = edge.parts(begin) + edge.parts(end) - each
+    margins = edge.margins(begin, end, each)
     return max(bound, 0.5 * float(margins.min(initial=np.inf))), travel

@@ -112,6 +112,10 @@ class ObstacleEdge:
         """(g,) travel bound of each shape in the world between two times [m]."""
         return self._travel.bounds(self._layer, begin, end, self.base_step)
 
+    def margins(self, begin: float, end: float, ways: Array) -> Array:
+        """See `interval_halving.Edge`."""
+        return self.parts(begin) + self.parts(end) - ways
+
 
 class SelfCollisionEdge:
     """An edge of the joints alone; its parts are the pairs of links that must not touch.
@@ -162,6 +166,10 @@ class SelfCollisionEdge:
         each = self._travel.bounds(self._layer, begin, end)
         both: Array = each[self._query.pairs[self._pairs]].sum(axis=1)
         return both
+
+    def margins(self, begin: float, end: float, ways: Array) -> Array:
+        """See `interval_halving.Edge`."""
+        return self.parts(begin) + self.parts(end) - ways
 
 
 def joint_configuration(motion: Motion | CurvedMotion, layer: int, time: float) -> Array:

@@ -1,4 +1,4 @@
-"""Clearances and proofs past bodies that move, along the edges of one motion at a fixed pace.
+"""Clearances and proofs past bodies and debris, along the edges of one motion at a fixed pace.
 
 A layer of the motion has one time. So a body is where it is at that time for all nodes of a layer,
 and what holds for obstacles at rest within a layer holds for it: a translation by x changes a
@@ -17,7 +17,7 @@ from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
-from ffsr_plan.proof.body_edge import BodyEdge
+from ffsr_plan.proof.body_edge import BodyEdge, DebrisProof, Passages
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import NominalPlacements, odd_times
@@ -29,10 +29,10 @@ POSE_ERROR = 1e-9
 
 
 class MovingObstacles:
-    """The bodies of a scene, as a motion passes them.
+    """The bodies and the debris of a scene, as a motion passes them.
 
     Attributes:
-        travel: (m,) bound on the way of any point of any body over each edge [m].
+        travel: (m,) bound on the way of any point of them over each edge [m].
         rounding: length added to every travel bound, at most [m].
         queries: number of Coal queries so far.
     """
@@ -52,7 +52,7 @@ class MovingObstacles:
 
         Args:
             motion: the motion from which offsets are counted.
-            scene: the obstacles, of which the bodies count here.
+            scene: the obstacles, of which what moves counts here.
             pace: at which the motion is run.
             travel: travel bounds along it.
             placements: placements of the shapes along it.
@@ -65,26 +65,34 @@ class MovingObstacles:
         self._travel, self._placements, self._corners = travel, placements, corners
         self._robot, scenes = motion.robot, scene.body_scenes
         self._queries = [ObstacleQuery(motion.robot, each, deadline) for each in scenes]
-        self._first = len(scene) - len(scene.bodies)
+        self._first = len(scene.at_rest)
         self._roundings = [
             rounding + POSE_ERROR * (1.0 + body.reach) + iteration_error(motion.robot, each)
             for body, each in zip(self._bodies, scenes, strict=True)
         ]
-        self.rounding = max(self._roundings)
         ends = pace.instants(np.arange(motion.edges + 1.0)).tolist()
         self._ways = np.array(
             [[body.travel(*ends[k : k + 2]) for k in range(motion.edges)] for body in self._bodies]
-        )
-        self.travel = frozen(self._ways.max(axis=0))
+        ).reshape(-1, motion.edges)
+        longest, roundings = [*self._ways], [*self._roundings]
+        self._debris: DebrisProof | None = None
+        if scene.debris:
+            own = motion.robot, scene, pace, travel, placements, rounding, deadline
+            self._debris = DebrisProof(*own)
+            longest.append(self._debris.travel)
+            roundings.append(self._debris.rounding)
+        self.rounding, self.travel = max(roundings), frozen(np.max(longest, axis=0))
         self._seen: dict[tuple[int, int], BodyDistances] = {}
+        self._times: dict[int, Array] = {}
 
     @property
     def queries(self) -> int:
         """Number of Coal queries so far."""
-        return sum(query.count for query in self._queries)
+        debris = 0 if self._debris is None else self._debris.distances.count
+        return debris + sum(query.count for query in self._queries)
 
     def least(self, parts: int, rows: IntArray, offsets: Array, others: Array) -> Array:
-        """The lesser of the distances to all bodies and of others, at the time of each place.
+        """The lesser of the distances to all that moves and of others, at the time of each place.
 
         Args:
             parts: 2, 4, 8 or 16 for places inside edges, see `NominalPlacements.between`; 0 for
@@ -98,7 +106,11 @@ class MovingObstacles:
         """
         for b in range(len(self._bodies)):
             others = self._body(b, parts).least(rows, offsets, others)
-        return others
+        if self._debris is None:
+            return others
+        placed = self._placements.between(parts) if parts else self._corners
+        times, at_once = self._instants(parts)[rows], np.zeros(len(rows))
+        return self._debris.distances.least(placed, rows, offsets, times, at_once, others)
 
     def certify(
         self, layers: IntArray, tails: Array, heads: Array, ends: Array, tolerance: float
@@ -128,10 +140,23 @@ class MovingObstacles:
                     edge = self._edge(b, int(layers[k]), tails[k], heads[k])
                     found = certify(edge, (float(pair[0]), float(pair[1])), tolerance)
                     verdicts[k] = worse(verdicts[k], found)
+        if self._debris is None:
+            return verdicts
+        ways = own + self._debris.travel[layers] + self._debris.rounding
+        left = np.flatnonzero(ends.sum(axis=1) <= ways)
+        edges = self._passages(layers[left], tails[left], heads[left])
+        past = self._debris.certify(self._corners, edges, tolerance)
+        for k, verdict in zip(left.tolist(), past, strict=True):
+            verdicts[k] = worse(verdicts[k], verdict)
         return verdicts
 
+    def _passages(self, layers: IntArray, tails: Array, heads: Array) -> Passages:
+        """Edges of the motion, each in its own time."""
+        steps, corners = self._steps[layers] + heads - tails, np.stack([layers, layers + 1], axis=1)
+        return Passages(layers, layers, tails, heads, steps, corners)
+
     def least_clearance(self, offsets: Array, least: float, precision: float) -> float:
-        """Proven lower bound on the clearance from the bodies along a path whose edges are free.
+        """Proven lower bound on the clearance from what moves along a path whose edges are free.
 
         Args:
             offsets: (m + 1, 3) offsets of the path's nodes [m].
@@ -152,10 +177,13 @@ class MovingObstacles:
                 edge = self._edge(b, layer, offsets[layer], offsets[layer + 1])
                 found, least = clearance_bound(edge, ends, least, precision)
                 bound = min(bound, found)
-        return bound
+        if self._debris is None:
+            return bound
+        edges = self._passages(layers[:-1], offsets[:-1], offsets[1:])
+        return min(bound, self._debris.least_clearance(self._corners, edges, least, precision))
 
     def nearest(self, layer: int, tail: Array, head: Array, time: float) -> Nearest:
-        """The nearest link and body at a place on an edge.
+        """The nearest link and body, or sphere of debris, at a place on an edge.
 
         Args:
             layer: the edge; m for the goal.
@@ -172,6 +200,9 @@ class MovingObstacles:
             poses = self._bodies[b].poses(instant)
             seen = in_axes(Placements(frames), poses, shift[None])
             pairs.append(query.nearest_at(seen, 0, np.zeros(3))._replace(obstacle=self._first + b))
+        if self._debris is not None:
+            measure = self._debris.distances.nearest_at
+            pairs.append(measure(Placements(frames), 0, shift, float(instant[0])))
         return min(pairs, key=lambda pair: pair.distance)
 
     def _edge(self, b: int, layer: int, tail: Array, head: Array) -> BodyEdge:
@@ -185,14 +216,19 @@ class MovingObstacles:
     def _body(self, b: int, parts: int) -> BodyDistances:
         """Distances to one body at the layers or at places inside edges."""
         if (b, parts) not in self._seen:
-            places: Array = np.arange(self._edges + 1.0)
-            placed = self._corners
-            if parts:
-                places = np.add.outer(odd_times(parts), places[:-1]).ravel()
-                placed = self._placements.between(parts)
-            poses = self._bodies[b].poses(self._pace.instants(places))
+            placed = self._placements.between(parts) if parts else self._corners
+            poses = self._bodies[b].poses(self._instants(parts))
             self._seen[b, parts] = BodyDistances(self._robot, self._queries[b], placed, poses)
         return self._seen[b, parts]
+
+    def _instants(self, parts: int) -> Array:
+        """Times of the rows of placements [s], see `least`."""
+        if parts not in self._times:
+            places: Array = np.arange(self._edges + 1.0)
+            if parts:
+                places = np.add.outer(odd_times(parts), places[:-1]).ravel()
+            self._times[parts] = self._pace.instants(places)
+        return self._times[parts]
 
 
 def worse(one: Verdict, other: Verdict) -> Verdict:

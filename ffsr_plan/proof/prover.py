@@ -87,7 +87,7 @@ class Prover:
         self._exact = iterated == 0.0
         self.rounding = self._rounding = rounding + iterated
         self._moving: MovingObstacles | None = None
-        if pace is not None and scene.bodies:
+        if pace is not None and scene.moves:
             self._moving = MovingObstacles(
                 nominal, scene, pace, self._travel, self._placements, self._corners, rounding,
                 self._deadline,

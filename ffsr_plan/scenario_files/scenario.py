@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 
+from ffsr_plan.bodies.debris.debris_cloud import DebrisCloud
 from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.core import bundled_files
 from ffsr_plan.core.arrays import Array
@@ -188,7 +189,12 @@ def _scene(file: ScenarioFile, folder: Path, ends: Sequence[Array]) -> Scene:
     for k, body in enumerate(file.bodies):
         with _in_table(f"bodies.{k}"):
             bodies.append(body.body(folder))
-    return scene + Scene(keep_in=[table.zone for table in file.keep_in], bodies=bodies)
+    clouds = list[DebrisCloud]()
+    for k, cloud in enumerate(file.debris):
+        with _in_table(f"debris.{k}"):
+            clouds.append(cloud.cloud(folder))
+    zones = [table.zone for table in file.keep_in]
+    return scene + Scene(keep_in=zones, bodies=bodies, debris=clouds)
 
 
 @contextmanager

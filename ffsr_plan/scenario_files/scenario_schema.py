@@ -27,6 +27,7 @@ from ffsr_plan.robots.srdf import NO_POSTURE
 from ffsr_plan.robots.urdf.inertias import INERTIA
 from ffsr_plan.robots.urdf.links import COLLISION
 from ffsr_plan.scenario_files.body_tables import BodyTable, PaceTable
+from ffsr_plan.scenario_files.debris_tables import Debris
 from ffsr_plan.scenario_files.obstacle_tables import (
     BeltTable,
     CloudTable,
@@ -255,6 +256,7 @@ class ScenarioFile:
         trusses: booms of struts.
         gates: pairs of spheres.
         bodies: bodies that move.
+        debris: clouds of spheres that drift.
         pace: the time from start to goal, where bodies move.
         lattice: layers and axes; without it, the base may be anywhere in the window, and joints
             within their limits.
@@ -277,6 +279,7 @@ class ScenarioFile:
     trusses: tuple[TrussTable, ...] = ()
     gates: tuple[GateTable, ...] = ()
     bodies: tuple[BodyTable, ...] = ()
+    debris: tuple[Debris, ...] = ()
     pace: PaceTable = field(default_factory=PaceTable)
     objective: ObjectiveTable = field(default_factory=ObjectiveTable)
     planner: Annotated[PlannerTable, ByPlannerName()] = field(default_factory=PlannerTable)

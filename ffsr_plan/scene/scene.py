@@ -5,47 +5,50 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.bodies.debris.debris_cloud import DebrisCloud
+from ffsr_plan.bodies.debris.drifting_tree import DriftingTree
+from ffsr_plan.bodies.debris.scene_debris import spheres_at, tree_of
 from ffsr_plan.bodies.moving_body import MovingBody
-from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, content
-from ffsr_plan.core.checks import FARTHEST, finite_array, number, text, truth
-from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.checks import number, text
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table
-from ffsr_plan.meshes import mesh_files
-from ffsr_plan.meshes.sphere_cover import cover
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene import sphere_files
+from ffsr_plan.scene.covered_mesh import covered
 from ffsr_plan.scene.scene_contents import (
     checked_members,
     checked_sources,
+    cloud_title,
+    common_growth,
     contents,
+    extent_in_words,
     member_title,
     refuse_members,
     row_count,
+    source_title,
 )
-from ffsr_plan.scene.shapes.extents import extents
+from ffsr_plan.scene.shapes.extents import bounds_of
 from ffsr_plan.scene.shapes.keep_in_zones import ZONES, Zone
 from ffsr_plan.scene.shapes.obstacle_shapes import SHAPES, ObstacleShape
 from ffsr_plan.scene.shapes.obstacle_tree import ObstacleTree, obstacle_tree
 from ffsr_plan.scene.urdf_shapes import robot_of, shapes_of
-
-_LARGEST_SCALE = 1e9  # [m] per unit of a mesh
 
 
 @dataclass(frozen=True, eq=False, init=False)
 class Scene:
     """Obstacles. `scene + other` holds the obstacles of both, those of `scene` first.
 
-    Obstacles are numbered: the spheres, then the shapes, the zones and the moving bodies. Two
-    scenes are equal if they hold the same obstacles in the same order.
+    Obstacles are numbered: the spheres, then the shapes, the zones, the moving bodies and the
+    spheres of debris. Two scenes are equal if they hold the same obstacles in the same order.
 
     Attributes:
         centers: (N, 3) centres in the world [m].
@@ -56,8 +59,9 @@ class Scene:
             mesh file, and a number of spheres. Errors name obstacles by them. Empty if unknown.
         shapes: obstacles of other shapes.
         keep_in: convex zones, each of which the whole robot stays in.
-        growth: distance by which shapes and bodies are grown on all sides, and zones shrunk [m].
+        growth: distance by which all but the spheres are grown, and zones shrunk [m].
         bodies: obstacles that move. Bodies do not see one another, nor what is at rest.
+        debris: clouds of spheres that drift.
     """
 
     centers: Array
@@ -68,6 +72,7 @@ class Scene:
     keep_in: tuple[Zone, ...] = ()
     growth: float = 0.0
     bodies: tuple[MovingBody, ...] = ()
+    debris: tuple[DebrisCloud, ...] = ()
 
     def __init__(
         self,
@@ -79,6 +84,7 @@ class Scene:
         keep_in: Sequence[Zone] = (),
         growth: float = 0.0,
         bodies: Sequence[MovingBody] = (),
+        debris: Sequence[DebrisCloud] = (),
     ) -> None:
         """Check the obstacles and make them read-only.
 
@@ -91,25 +97,24 @@ class Scene:
             keep_in: `Box`, `Ball` or `HalfSpace`.
             growth: see the class.
             bodies: obstacles that move.
+            debris: clouds of spheres that drift.
 
         Raises:
-            InvalidInput: arrays that do not fit; a number that is not finite, or a radius <= 0,
-                with the index of the sphere; or something that is no shape, zone or body.
+            InvalidInput: arrays that do not fit; a number not finite or a radius <= 0, with the
+                index of the sphere; or something that is no shape, zone, body or cloud.
         """
-        check_memory(
-            "scene", {"spheres": row_count(radii)}, sphere_files.BYTES_PER_SPHERE, "fewer spheres"
-        )
+        count, each = row_count(radii), sphere_files.BYTES_PER_SPHERE
+        check_memory("scene", {"spheres": count}, each, "fewer spheres")
         c, r = sphere_files.checked_spheres("scene ", centers, radii, "sphere")
-        object.__setattr__(self, "centers", c)
-        object.__setattr__(self, "radii", r)
+        for field, array in (("centers", c), ("radii", r)):
+            object.__setattr__(self, field, array)
         object.__setattr__(self, "excess", number("scene excess", excess, at_least=0.0))
         object.__setattr__(self, "sources", checked_sources(sources, len(r)))
-        object.__setattr__(
-            self, "shapes", checked_members("shapes", shapes, tuple(SHAPES.values()))
-        )
+        object.__setattr__(self, "shapes", checked_members("shapes", shapes, (*SHAPES.values(),)))
         object.__setattr__(self, "keep_in", checked_members("keep_in", keep_in, ZONES))
         object.__setattr__(self, "growth", number("scene growth", growth, at_least=0.0))
         object.__setattr__(self, "bodies", checked_members("bodies", bodies, (MovingBody,)))
+        object.__setattr__(self, "debris", checked_members("debris", debris, (DebrisCloud,)))
 
     def grown(self, by: float) -> Scene:
         """The same obstacles, grown on all sides; the names of the spheres' sources say so.
@@ -184,25 +189,8 @@ class Scene:
         Raises:
             InvalidInput: a mesh that cannot be read, is not closed, or is too large for the excess.
         """
-        where = "mesh"
-        if isinstance(mesh, (str, Path)):
-            file = checked_path("mesh", mesh)
-            where = f"mesh {mesh}"
-            corners = mesh_files.surface(str(file.absolute()), [], "mesh")
-        elif hasattr(mesh, "triangles"):
-            corners = finite_array("mesh, triangles", mesh.triangles, (-1, 3, 3))
-        else:
-            raise InvalidInput("mesh", mesh, "a path, or an object with triangles")
-        if len(corners) == 0:
-            raise InvalidInput("mesh", "no triangle", "a mesh with triangles")
-        axes = rotations.matrix(rotations.from_angles(finite_array("attitude", attitude, (3,))))
-        factor = number("scale", scale, above=0.0, at_most=_LARGEST_SCALE)
-        triangles = factor * corners @ axes.T + finite_array("position", position, (3,), FARTHEST)
-        finite_array("mesh, corners in the world", triangles, (-1, 3, 3), FARTHEST)
-        excess = number(f"{where}, excess", excess, above=0.0, at_most=FARTHEST)
-        spheres = cover(triangles, excess, truth("inside", inside), where)
-        name = Path(mesh).name if isinstance(mesh, (str, Path)) else "mesh"
-        return cls(spheres.centers, spheres.radii, excess).named(name)
+        spheres, name = covered(mesh, excess, scale, position, attitude, inside)
+        return cls(spheres.centers, spheres.radii, float(excess)).named(name)
 
     @classmethod
     def from_urdf(
@@ -249,12 +237,12 @@ class Scene:
         Args:
             obstacle: its number.
         """
-        end = 0
-        for name, count in self.sources:
-            end += count
-            if obstacle < end:
-                return name
-        return member_title(self._members, obstacle - len(self.radii))
+        first = len(self) - sum(map(len, self.debris))
+        if obstacle >= first:
+            return source_title(self._clouds, obstacle - first)
+        if obstacle >= len(self.radii):
+            return member_title(self._members, obstacle - len(self.radii))
+        return source_title(self.sources, obstacle)
 
     def to_csv(self, path: str | Path) -> None:
         """Write a table that `from_csv` reads again bit for bit; `excess` is not written.
@@ -265,7 +253,7 @@ class Scene:
         Raises:
             InvalidInput: a path that cannot be written, or obstacles that are no spheres.
         """
-        refuse_members("to_csv", self._members)
+        refuse_members("to_csv", self._all_members)
         sphere_files.write_csv(path, self.centers, self.radii)
 
     @cached_property
@@ -275,15 +263,32 @@ class Scene:
         Raises:
             InvalidInput: bodies move, so that there is no such tree; `at(time)` has one.
         """
-        if self.bodies:
-            allowed = "no body that moves, where nothing tells the time"
-            raise InvalidInput("scene bodies", list(self.bodies), allowed)
+        if self.moves:
+            allowed = "nothing that moves, where nothing tells the time"
+            raise InvalidInput("scene bodies", list(self.moving), allowed)
         return obstacle_tree(self.centers, self.radii, self.shapes, self.keep_in, self.growth)
 
     @cached_property
     def at_rest(self) -> Scene:
         """The obstacles that do not move."""
-        return replace(self, bodies=()) if self.bodies else self
+        return replace(self, bodies=(), debris=()) if self.moves else self
+
+    @property
+    def moves(self) -> bool:
+        """Whether there are obstacles that move."""
+        return bool(self.moving)
+
+    @property
+    def moving(self) -> tuple[MovingBody | DebrisCloud, ...]:
+        """The obstacles that move."""
+        return self.bodies + self.debris
+
+    def debris_tree(self, middle: float) -> DriftingTree:
+        """The spheres of all clouds as one tree, grown like all others.
+
+        A search in it is fastest about the time `middle` [s].
+        """
+        return tree_of(self.debris, self.growth, middle)
 
     @cached_property
     def body_scenes(self) -> tuple[Scene, ...]:
@@ -297,12 +302,17 @@ class Scene:
             time: [s], up to which the motions of all bodies are known.
 
         Returns:
-            A scene whose shapes are those of this one, then those of the bodies.
+            A scene whose spheres are those of this one, then those of the debris, and whose shapes
+            are those of this one, then those of the bodies.
         """
-        placed = list(self.shapes)
-        for k, body in enumerate(self.bodies):
-            placed += body.shapes_at(time, f"bodies.{k}")
-        return replace(self, shapes=placed, bodies=()) if self.bodies else self  # type: ignore[arg-type]
+        if not self.moves:
+            return self
+        each = (body.shapes_at(time, f"bodies.{k}") for k, body in enumerate(self.bodies))
+        placed = [*self.shapes, *chain.from_iterable(each)]
+        there = replace(self, shapes=placed, bodies=(), debris=())  # type: ignore[arg-type]
+        if self.debris:
+            there += Scene(*spheres_at(self.debris, self.growth, time), sources=self._clouds)
+        return there
 
     @property
     def is_closed_form(self) -> bool:
@@ -312,9 +322,8 @@ class Scene:
     @cached_property
     def closed_form_part(self) -> Scene:
         """The scene without obstacles to which distances are not short closed forms."""
-        if self.is_closed_form:
-            return self
-        return replace(self, shapes=tuple(shape for shape in self.shapes if shape.is_box))
+        boxes = tuple(shape for shape in self.shapes if shape.is_box)
+        return self if len(boxes) == len(self.shapes) else replace(self, shapes=boxes)
 
     def __add__(self, other: Scene) -> Scene:
         if not isinstance(other, Scene):
@@ -326,8 +335,9 @@ class Scene:
             (*self._all_sources(), *other._all_sources()),
             self.shapes + other.shapes,
             self.keep_in + other.keep_in,
-            _common_growth(self, other),
+            common_growth([each.growth for each in (self, other) if each._has_growth]),
             self.bodies + other.bodies,
+            self.debris + other.debris,
         )
 
     def __eq__(self, other: object) -> bool:
@@ -343,21 +353,25 @@ class Scene:
 
     @property
     def _has_growth(self) -> bool:
-        """Whether there is something that growth applies to."""
-        return any(self._members.values())
+        return any(self._all_members.values())
+
+    @property
+    def _clouds(self) -> tuple[tuple[str, int], ...]:
+        return tuple((cloud_title(each, k), len(each)) for k, each in enumerate(self.debris))
 
     def _all_sources(self) -> tuple[tuple[str, int], ...]:
-        count = len(self.radii)
-        return self.sources or ((("", count),) if count else ())
+        return self.sources or (("", len(self.radii)),) * (len(self.radii) > 0)
 
     def __repr__(self) -> str:
-        extent = self._extent()
+        extent = extent_in_words(self.bounds())
         return f"Scene({self.contents}{extent and ', '}{extent})"
 
     def _repr_html_(self) -> str:
-        rows = {"spheres": str(len(self.radii)), "extent": self._extent() or "empty"}
-        if self._has_growth:
-            rows = {"obstacles": self.contents, **rows}
+        rows = {"obstacles": self.contents} if self._has_growth else {}
+        rows |= {
+            "spheres": str(len(self.radii)),
+            "extent": extent_in_words(self.bounds()) or "empty",
+        }
         if self.excess:
             rows["excess"] = f"{self.excess:g} m"
         return html_table("Scene", rows)
@@ -365,36 +379,22 @@ class Scene:
     @property
     def contents(self) -> str:
         """How many obstacles of each kind there are."""
-        return contents(len(self.radii), self._members)
+        return contents(len(self.radii), self._all_members)
 
     @property
     def _members(self) -> dict[str, tuple[Any, ...]]:
-        """The obstacles that are no spheres."""
+        """The obstacles that are no spheres, each of which has one number."""
         return {name: getattr(self, name) for name in ("shapes", "keep_in", "bodies")}
+
+    @property
+    def _all_members(self) -> dict[str, tuple[Any, ...]]:
+        return {**self._members, "debris": self.debris}
 
     def bounds(self) -> Array:
         """(2, 3) least and greatest coordinates of what is at rest [m]; (0, 3) without any."""
-        radii, ends = self.radii[:, None], extents(self.shapes)
-        low = np.vstack([self.centers - radii, ends[:, 0] - self.growth])
-        high = np.vstack([self.centers + radii, ends[:, 1] + self.growth])
-        return np.stack([low.min(axis=0), high.max(axis=0)]) if len(low) else np.zeros((0, 3))
-
-    def _extent(self) -> str:
-        """The box around spheres and shapes, in words."""
-        bounds = self.bounds()
-        if not len(bounds):
-            return ""
-        sides = zip("xyz", *bounds, strict=True)
-        return ", ".join(f"{axis} {a:.4g} to {b:.4g} m" for axis, a, b in sides)
+        return bounds_of(self.centers, self.radii, self.shapes, self.growth)
 
     def __len__(self) -> int:
-        """Number of obstacles: spheres, shapes, zones and bodies."""
-        return len(self.radii) + len(self.shapes) + len(self.keep_in) + len(self.bodies)
-
-
-def _common_growth(one: Scene, other: Scene) -> float:
-    """The growth of the shapes and zones of two scenes, which is one for both."""
-    grown = [each.growth for each in (one, other) if each._has_growth]
-    if len(set(grown)) > 1:
-        raise InvalidInput("scene growth", grown, "one growth of all shapes, zones and bodies")
-    return grown[0] if grown else 0.0
+        """Number of obstacles: spheres, shapes, zones, bodies and spheres of debris."""
+        members = sum(map(len, self._members.values()))
+        return len(self.radii) + members + sum(map(len, self.debris))

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import whole_number
-from ffsr_plan.core.contacts import RoundName, ShapeName, ZoneName
+from ffsr_plan.core.contacts import CloudName, RoundName, ShapeName, ZoneName
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted
 
@@ -69,6 +70,57 @@ def member_title(members: Mapping[str, Sequence[Any]], place: int) -> str:
     return (RoundName if any(part.word in _ROUND for part in parts) else ShapeName)(text)
 
 
+def cloud_title(cloud: Any, number: int) -> CloudName:  # noqa: ANN401 - any member of a scene
+    """A debris cloud as messages name it.
+
+    Args:
+        cloud: the cloud.
+        number: its own among those of the scene.
+    """
+    return CloudName(f"{cloud.word} '{cloud.name}'" if cloud.name else f"{cloud.word} {number}")
+
+
+def source_title(sources: Sequence[tuple[str, int]], place: int) -> str:
+    """What a sphere comes from, as messages name it; empty where that is unknown.
+
+    Args:
+        sources: pairs of a name and a number of spheres.
+        place: number of the sphere.
+    """
+    begin = 0
+    for name, count in sources:
+        if place < begin + count:
+            own = ShapeName(f"sphere {place - begin} of {name}")
+            return own if isinstance(name, CloudName) else name
+        begin += count
+    return ""
+
+
+def extent_in_words(bounds: Array) -> str:
+    """The box around obstacles; empty without any.
+
+    Args:
+        bounds: (2, 3) least and greatest coordinates [m], or (0, 3).
+    """
+    sides = zip("xyz", *bounds, strict=True) if len(bounds) else ()
+    return ", ".join(f"{axis} {a:.4g} to {b:.4g} m" for axis, a, b in sides)
+
+
+def common_growth(growths: Sequence[float]) -> float:
+    """The growth of the members of several scenes, which is one for all.
+
+    Args:
+        growths: of the scenes that have such members [m].
+
+    Raises:
+        InvalidInput: they differ.
+    """
+    if len(set(growths)) > 1:
+        allowed = "one growth of all shapes, zones, bodies and debris"
+        raise InvalidInput("scene growth", list(growths), allowed)
+    return growths[0] if growths else 0.0
+
+
 def contents(spheres: int, members: Mapping[str, Sequence[Any]]) -> str:
     """How many obstacles of each kind there are, in words.
 
@@ -79,9 +131,11 @@ def contents(spheres: int, members: Mapping[str, Sequence[Any]]) -> str:
     words = Counter(
         "zone" if field == "keep_in" else each.word for field in members for each in members[field]
     )
-    plain = bool(spheres or not (members["shapes"] or members["bodies"]))
+    plain = bool(spheres or not any(members[field] for field in ("shapes", "bodies", "debris")))
     parts = [counted(spheres, "sphere")] * plain
     parts += [f"{count} {_plural(word, count)}" for word, count in words.items()]
+    if members["debris"]:
+        parts[-1] += f" of {counted(sum(map(len, members['debris'])), 'sphere')}"
     return ", ".join(parts)
 
 

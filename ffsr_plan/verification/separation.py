@@ -16,6 +16,7 @@ import numpy as np
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.contacts import ShapeName
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.scene_contents import cloud_title
 from ffsr_plan.verification.distances.obstacle_arrays import (
     shape_arrays,
     zone_arrays,
@@ -33,6 +34,7 @@ from ffsr_plan.verification.distances.solid_distance_kernels import (
 from ffsr_plan.verification.distances.sphere_blocks import sphere_blocks
 from ffsr_plan.verification.motion_samples import Samples
 from ffsr_plan.verification.moving_bodies.body_distances import BodyDistances
+from ffsr_plan.verification.moving_bodies.drifting_spheres import DriftingSpheres
 from ffsr_plan.verification.solids import Shape
 from ffsr_plan.verification.urdf_reading import Bodies
 
@@ -45,12 +47,13 @@ class SampledDistances:
     """Distances of a robot's parts.
 
     First come all shapes to the obstacles at rest, then all shapes to the first moving body, to the
-    second one and so on, and then the pairs of shapes.
+    second one and so on, to each class of debris, and then the pairs of shapes.
 
     Attributes:
         shapes: number of shapes that are measured against obstacles at rest; 0 if there are none.
-        outer: number of parts that are measured against obstacles, bodies included.
-        bodies: (parts,) number of the body from 1 on; 0 of other parts.
+        outer: number of parts that are measured against obstacles, all that moves included.
+        bodies: (parts,) number of the body or class of debris from 1 on; 0 of other parts.
+        debris: the classes of debris.
         shape_of: (outer,) the shape of each of these parts.
         pairs: (p, 2) the shapes of each pair that must not touch.
         names: names of the links that each part belongs to.
@@ -67,8 +70,9 @@ class SampledDistances:
         """
         number = {shape: k for k, shape in enumerate(bodies.shapes)}
         pairs = bodies.pairs()
-        own, moving = len(bodies.shapes), len(scene.bodies)
-        self.shapes = own if len(scene) > moving else 0
+        self.debris = DriftingSpheres(scene.debris, scene.growth, origin)
+        own, moving = len(bodies.shapes), len(scene.bodies) + len(self.debris.speeds)
+        self.shapes = own if len(scene.at_rest) else 0
         self.outer = self.shapes + moving * own
         self.pairs: IntArray = np.array(
             [(number[a], number[b]) for a, b in pairs], dtype=np.int64
@@ -81,12 +85,17 @@ class SampledDistances:
         self.bodies: IntArray = np.zeros(self.parts, dtype=np.int64)
         self.bodies[self.shapes : self.outer] = 1 + np.repeat(np.arange(moving), own)
         self._solids = arrays_of(bodies.shapes)
-        self._scene = scene
+        self._scene, self._count = scene, len(scene.bodies)
         self._blocks = sphere_blocks(scene.centers - origin, scene.radii)
         self._obstacles, self._around = shape_arrays(scene.shapes, scene.growth, origin)
         self._zones = zone_arrays(scene.keep_in, scene.growth, origin)
         self._moving = BodyDistances(scene.bodies, scene.growth, self._solids)
-        self.stretches(np.zeros(0, dtype=np.int64), np.zeros((0, self.shapes, 3)), np.zeros(0))
+        self.stretches(
+            np.zeros(0, dtype=np.int64),
+            np.zeros(0),
+            np.zeros((0, own, 3)),
+            np.zeros((0, self.outer)),
+        )
 
     def middles(self, samples: Samples) -> Array:
         """(N, s, 3) middles of the shapes at some samples, from the origin of base positions."""
@@ -94,13 +103,15 @@ class SampledDistances:
         turned: Array = np.einsum("nij,nsj->nsi", samples.base_turns, inside)
         return turned + samples.base_places[:, None]
 
-    def stretches(self, stretch: IntArray, tracks: Array, travels: Array) -> None:
+    def stretches(self, stretch: IntArray, instants: Array, tracks: Array, travels: Array) -> None:
         """List the obstacles that can be the nearest ones to each shape on stretches of its way.
 
         Args:
             stretch: (N,) number of the stretch that each sample lies on, from 0, ascending.
+            instants: (N,) times of the samples [s].
             tracks: (N, s, 3) middles of the shapes at the samples.
-            travels: (N, s) how far a shape may be from the nearest sample of its stretch [m].
+            travels: (N, >= outer) how far the shape of each part, and what it is measured against
+                together, may be from the nearest sample of its stretch [m].
         """
         count, shapes = int(stretch[-1]) + 1 if len(stretch) else 0, self.shapes
         middles, reaches = np.zeros((count, shapes, 3)), np.zeros((count, shapes))
@@ -114,6 +125,10 @@ class SampledDistances:
         self._near, self._starts = near_spheres(*way, self._blocks)
         near, self._shape_starts = near_spheres(*way, self._around)
         self._near_shapes = self._around.order[near]
+        own, classes = len(self._solids.radii), len(self.debris.speeds)
+        beside = travels[:, self.outer - classes * own : self.outer]
+        beside = beside.reshape(len(stretch), classes, own)
+        self.debris.stretches(self._solids.radii, stretch, instants, tracks, beside)
 
     def at(
         self, samples: Samples, which: IntArray, part: IntArray, stretch: IntArray, enough: Array
@@ -142,14 +157,30 @@ class SampledDistances:
         )
         moving = ~rest & ~inner
         if moving.any():
-            shape, body = self.shape_of[part[moving]], self.bodies[part[moving]] - 1
-            placed = self._placed(samples, np.column_stack([which[moving], shape]))
-            found[moving] = self._moving.at(placed[1], body, placed[2:], samples.moving)
+            found[moving] = self._to_moving(samples, which[moving], part[moving], stretch[moving])
         asked[:, 1] -= self.outer
         found[inner] = pair_distances(
             self._solids, asked[inner], self.pairs, samples.turns, samples.places,
             np.maximum(enough[inner], _SHARP),
         )  # fmt: skip
+        return found
+
+    def _to_moving(
+        self, samples: Samples, which: IntArray, part: IntArray, stretch: IntArray
+    ) -> Array:
+        """Distances to bodies and debris, for questions as of `at`."""
+        shape, body = self.shape_of[part], self.bodies[part] - 1
+        placed, bodies = self._placed(samples, np.column_stack([which, shape])), body < self._count
+        found = np.empty(len(which))
+        if bodies.any():
+            asked = placed[1][bodies]
+            found[bodies] = self._moving.at(asked, body[bodies], placed[2:], samples.moving)
+        left = ~bodies
+        if left.any():
+            row = stretch[left] * len(self._solids.radii) + shape[left]
+            some = (placed[0], placed[1][left], *placed[2:])
+            group, instants = body[left] - self._count, samples.instants[which[left]]
+            found[left] = self.debris.at(some, group, row, instants)
         return found
 
     def _to_obstacles(
@@ -182,9 +213,15 @@ class SampledDistances:
             part: the shape, among the obstacles at rest or a moving body.
 
         Returns:
-            The name of a shape, zone or body, "an obstacle" for a sphere.
+            The name of a shape, zone, body or sphere of debris, "an obstacle" for other spheres.
         """
         scene = self._scene
+        number = int(self.bodies[part]) - 1
+        if number >= self._count:
+            placed = self._placed(samples, np.array([[which, self.shape_of[part]]]))
+            group, time = number - self._count, float(samples.instants[which])
+            first = len(scene.at_rest) + self._count
+            return scene.source_of(first + self.debris.nearest(placed, group, time))
         if body := self.body_name(part):
             return body
         spheres, shapes = len(scene.radii), len(scene.shapes)
@@ -210,16 +247,19 @@ class SampledDistances:
         return ShapeName("an obstacle") if nearest < spheres else scene.source_of(nearest)
 
     def body_name(self, part: int) -> str:
-        """The moving body that a part is measured against, in words; empty where it is none."""
-        number, still = int(self.bodies[part]), len(self._scene) - len(self._scene.bodies)
+        """The moving body, or debris, that a part is measured against; empty where it is none."""
+        number, still = int(self.bodies[part]), len(self._scene.at_rest)
+        if number > self._count:
+            first, *others = self._scene.debris
+            return "debris" if others else cloud_title(first, 0)
         return self._scene.source_of(still + number - 1) if number else ""
 
     def clearances(self, samples: Samples) -> Array:
         """(N,) least distances of any shape to an obstacle [m]; infinite without obstacles."""
         count, outer = len(samples.base_places), self.outer
         order = np.arange(count)
-        still = np.zeros((count, self.shapes))
-        self.stretches(order, self.middles(samples), still)
+        still = np.zeros((count, outer))
+        self.stretches(order, samples.instants, self.middles(samples), still)
         which, part = np.repeat(order, outer), np.tile(np.arange(outer), count)
         each = self.at(samples, which, part, which, np.zeros(len(which)))
         return np.min(each.reshape(count, outer), axis=1, initial=np.inf)

@@ -100,8 +100,8 @@ class _Intervals(NamedTuple):
         first: (n,) numbers of the samples at their begins.
         last: (n,) numbers of those at their ends.
         turn: (n,) bound on the angular velocity of the base [rad per edge].
-        ways: (n, 1 + B) bounds on the travel of what is measured against: of the first, which is
-            at rest, zero, and then of each moving body [m].
+        ways: (n, 1 + B + G) bounds on the travel of what is measured against: of the first, which
+            is at rest, zero, then of each moving body, and of each class of debris [m].
     """
 
     edge: IntArray
@@ -172,7 +172,9 @@ class _Sweep:
             [speeds[:, shape_of] + course.base_speeds[:, None], rates.of_pairs(pairs)]
         )
         self._reach = np.append(reach[shape_of], np.zeros(len(pairs)))
-        spare = np.append(0.0, course.moving.roundings)[self.distances.bodies]
+        classes = np.full(len(self.distances.debris.speeds), ROUNDING)
+        roundings = np.concatenate([[0.0], course.moving.roundings, classes])
+        spare = roundings[self.distances.bodies]
         self._spare = ROUNDING + spare
         self._claim = course.clearance
         self._start = course.at(np.zeros(1, dtype=np.int64), np.zeros(1)).centers_of_mass[0]
@@ -201,7 +203,8 @@ class _Sweep:
         which, part = np.repeat(order, len(parts)), np.tile(parts, len(order))
         travel = self._travel(intervals, which, part).reshape(len(order), len(parts))
         beside = np.maximum(np.vstack([travel[:1], travel]), np.vstack([travel, travel[-1:]]))
-        self.distances.stretches(edge - edge[0], self.distances.middles(samples), beside)
+        middles = self.distances.middles(samples)
+        self.distances.stretches(edge - edge[0], samples.instants, middles, beside)
         asked = np.repeat(points - begin, len(parts)), np.tile(parts, len(points))
         values = self._measured(samples, edge, *asked, beside.ravel())
         table = values.reshape(len(points), len(parts))
@@ -244,13 +247,14 @@ class _Sweep:
         return _Intervals(edge, begin, end, first, last, turn, self._ways(first, last))
 
     def _ways(self, first: IntArray, last: IntArray) -> Array:
-        """(n, 1 + B) see `_Intervals`; that bodies keep to it is noted too."""
+        """(n, 1 + B + G) see `_Intervals`; that bodies keep to it is noted too."""
         bodies, found = self.course.moving, self.found
         poses, instants = self._samples.moving, self._samples.instants
         times = instants[first], np.maximum(instants[last], instants[first])
         excess = bodies.excess(poses.at(first), poses.at(last), *times)
         found.excess_ways = np.maximum(found.excess_ways, excess)
-        return np.column_stack([np.zeros(len(first)), bodies.ways(*times)])
+        debris = self.distances.debris.ways(*times)
+        return np.column_stack([np.zeros(len(first)), bodies.ways(*times), debris])
 
     def _travel(self, intervals: _Intervals, interval: IntArray, part: IntArray) -> Array:
         """Travel of parts, and of what they are measured against, in intervals [m]."""

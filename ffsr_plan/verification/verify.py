@@ -279,7 +279,7 @@ def other_motion(swept: Swept) -> list[str]:
 
 def _other_bodies(problem: Problem, swept: Swept) -> Iterator[str]:
     """Bodies that move farther than the bounds on their travel say, which functions may do."""
-    still = len(problem.scene) - len(problem.scene.bodies)
+    still = len(problem.scene.at_rest)
     for k, excess in enumerate(swept.excess_ways):
         if excess > AGREEMENT:
             name = problem.scene.source_of(still + k)

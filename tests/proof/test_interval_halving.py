@@ -28,11 +28,11 @@ class Line:
         self.asked.append(time)
         return math.hypot((time - 0.5) * self.speed, self.y) - self.radius
 
-    def parts(self, time):
-        return np.array([self.clearance(time)])
-
     def travel(self, begin, end):
         return np.array([(end - begin) * self.speed])
+
+    def margins(self, begin, end, ways):
+        return self.clearance(begin) + self.clearance(end) - ways
 
     @property
     def ends(self):
@@ -92,11 +92,11 @@ class TwoLinks(Line):
         self.asked.append(time)
         return self.beside
 
-    def parts(self, time):
-        return np.array([self.beside, 5.0])
-
     def travel(self, begin, end):
         return np.array([0.0, (end - begin) * self.speed])
+
+    def margins(self, begin, end, ways):
+        return 2.0 * np.array([self.beside, 5.0]) - ways
 
 
 def test_a_near_link_at_rest_does_not_affect_a_far_moving_one():

@@ -35,11 +35,14 @@ class SampledScene:
     """Distances of configurations to all obstacles of a scene, each at its own time."""
 
     def __init__(self, robot, scene):
-        self._bodies = scene.bodies
+        self._bodies = [*scene.bodies]
+        for cloud in scene.debris:  # each sphere is a body of its own
+            rows = zip(cloud.centers, cloud.radii, cloud.velocities, strict=True)
+            self._bodies += [fp.MovingBody([fp.Ball(r)], fp.Drift(v), c) for c, r, v in rows]
         self._at_rest = ObstacleQuery(robot, scene.at_rest)
         self._each = [
             ObstacleQuery(robot, fp.Scene(shapes=b.shapes, growth=scene.growth))
-            for b in scene.bodies
+            for b in self._bodies
         ]
 
     def distances(self, q, times):
@@ -160,8 +163,18 @@ def some_body(rng, place, duration):
     return fp.MovingBody(shapes, track)
 
 
-def small_problem(seed, mode="free-flying", waits=False):
-    """A way of 4 m, with progress 3 m, with bodies in it, on a lattice of few paths."""
+def some_debris(rng, far, duration):
+    """Five spheres beside the middle of a way of `far` [m], one of them fast."""
+    places = far * rng.uniform((0.3, 0.2, -0.02), (0.7, 0.7, 0.02), (5, 3))
+    places[:, 1] *= rng.choice([-1.0, 1.0], 5)
+    velocities = rng.normal(size=(5, 3)) * (0.006, 0.006, 0.001)
+    velocities[0] *= 6.0
+    radii = rng.uniform(0.03, 0.1, 5)
+    return fp.DebrisCloud(places - 0.5 * duration * velocities, radii, velocities, "shell")
+
+
+def small_problem(seed, mode="free-flying", waits=False, debris=False):
+    """A way of 4 m, with progress 3 m, with bodies or debris in it, on a lattice of few paths."""
     rng, robot, duration = np.random.default_rng(seed), fp.load_robot("planar_dual_arm"), 60.0
     far = 3.0 if waits else 4.0
     bodies = [
@@ -169,6 +182,8 @@ def small_problem(seed, mode="free-flying", waits=False):
     ]
     if rng.random() < 0.5:
         bodies.append(some_body(rng, far * np.array([0.5, rng.uniform(-0.5, 0.5), 0.0]), 60.0))
+    clouds = [some_debris(rng, far, duration)] if debris else []
+    bodies = bodies[:1] if debris and seed % 2 else [] if debris else bodies
     still = [fp.Box((0.2, 0.2, 1.0), (0.5 * far, rng.uniform(0.8, 2.4) * rng.choice([-1, 1]), 0.0))]
     lattice = fp.Lattice(3, lateral=fp.Axis(2, 0.5))
     if waits:
@@ -177,7 +192,7 @@ def small_problem(seed, mode="free-flying", waits=False):
         lattice = fp.Lattice(4, lateral=fp.Axis(1, 0.9), progress=progress)
     return fp.Problem(
         robot,
-        fp.Scene(shapes=still, bodies=bodies),
+        fp.Scene(shapes=still, bodies=bodies, debris=clouds),
         start=robot.neutral(),
         goal=robot.configuration((far, 0.0, 0.0), (0.4, 0.0, 0.0), {"left_1": 0.6}),
         mode=mode,
@@ -212,10 +227,11 @@ def agree(problem):
 
 
 def main():
-    """`python -m benchmarks.studies.moving.all_paths`: 100 problems of each kind."""
-    for waits, mode in product((False, True), ("free-flying", "attitude-held")):
-        results = np.array([agree(small_problem(seed, mode, waits)) for seed in range(50)])
-        kind = "progress" if waits else "fixed pace"
+    """`python -m benchmarks.studies.moving.all_paths`: 100 problems of each kind, and of debris."""
+    kinds = product((False, True), (False, True), ("free-flying", "attitude-held"))
+    for debris, waits, mode in kinds:
+        results = np.array([agree(small_problem(seed, mode, waits, debris)) for seed in range(50)])
+        kind = ("progress" if waits else "fixed pace") + ", debris" * debris
         equal, solved = results.sum(axis=0)
         print(f"{kind}, {mode}: {equal} of 50 equal, {solved} with a path")
 

@@ -32,9 +32,9 @@ class Together:
         self._edge = edge
         self.speed, self.rounding, self.clearance = edge.speed, edge.rounding, edge.clearance
 
-    def parts(self, time: float) -> np.ndarray:
+    def margins(self, begin: float, end: float, ways: np.ndarray) -> np.ndarray:
         """(1,) [m]."""
-        return np.array([min(self._edge.parts(time))])
+        return min(self._edge.parts(begin)) + min(self._edge.parts(end)) - ways
 
     def travel(self, begin: float, end: float) -> np.ndarray:
         """(1,) [m]."""

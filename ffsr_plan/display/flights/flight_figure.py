@@ -10,7 +10,7 @@ import numpy as np
 from ffsr_plan.core.checks import unknown_name, whole_number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.display import figure_style
-from ffsr_plan.display.body_drawing import chosen_rows, draw_bodies, write_times
+from ffsr_plan.display.body_drawing import chosen_rows, draw_bodies, draw_debris, write_times
 from ffsr_plan.display.figure_style import SERIES, Named, Style
 from ffsr_plan.display.flights.flight_samples import (
     FlightSamples,
@@ -27,6 +27,7 @@ from ffsr_plan.display.path_drawing import (
     name_directions,
 )
 from ffsr_plan.display.scenes.body_tracks import body_tracks
+from ffsr_plan.display.scenes.debris_track import debris_track
 from ffsr_plan.display.scenes.picture_data import Quantity, drawn_solid
 from ffsr_plan.display.scenes.projection import view_axes
 from ffsr_plan.display.scenes.shape_outlines import points_of_extent
@@ -82,7 +83,7 @@ def flight_figure(
     style = Style(_own_style(shown), colours, labels)
     rows = np.searchsorted(times, marks).tolist()
     if axes is None:
-        hidden = () if flown.problem.scene.bodies else ("clearance",)
+        hidden = () if flown.problem.scene.moves else ("clearance",)
         figure, axes = _new_figure(flown, samples, [n for n in shown if n not in hidden])
     else:
         figure = _figure_of(axes, shown)
@@ -183,7 +184,15 @@ def _draw_path(
     draw_bodies(ax, bodies, chosen_rows(rows), view[:2], style, written, _LETTERS_OF_BODIES)
     name_directions(ax, problem, "path", leaves_plane=False)
     draw_named_zones(ax, problem, view, style, _LETTERS)
-    if problem.scene.keep_in or bodies:
+    draw_debris(
+        ax,
+        debris_track(problem.scene, samples.times),
+        chosen_rows(rows),
+        view[:2],
+        style,
+        _LETTERS_OF_BODIES,
+    )
+    if problem.scene.keep_in or problem.scene.moves:
         ax.set_anchor("W")  # leaves the room to the legend
     ax.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.2)
 

@@ -73,7 +73,7 @@ class FlownProblem(NamedTuple):
 
     def not_proven(self) -> str:
         """What is to be said where bodies move, past which the flight's own pace is not proven."""
-        return ", not proven past moving bodies" if self.problem.scene.bodies else ""
+        return ", not proven past moving bodies" if self.problem.scene.moves else ""
 
 
 class FlightSamples(NamedTuple):

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_tracks
+from ffsr_plan.display.scenes.body_tracks import body_tracks
+from ffsr_plan.display.scenes.debris_track import debris_track
 from ffsr_plan.display.scenes.meshcat_objects import CommandLog
 from ffsr_plan.display.scenes.picture_data import drawn_solid, motion_frames
 from ffsr_plan.display.scenes.projection import view_axes
 from ffsr_plan.display.scenes.scene_objects import (
     add_bodies,
     add_body_ghosts,
+    add_debris,
     add_ends,
     add_obstacles,
     add_zones,
@@ -48,10 +50,14 @@ def opening_page(problem: Problem, lattice: LayeredLattice | None, title: str) -
     aside = 0.5 * _farthest_aside(problem, lattice)  # little of the search goes farther out
     spread = centers + aside[:, None, None]
     tracks = body_tracks(problem.scene, _instants(problem))
-    view = set_up(viewer, problem, spread, radii, tracks)
+    debris = debris_track(problem.scene, _instants(problem))
+    view = set_up(viewer, problem, spread, radii, tracks, debris)
     add_obstacles(viewer["obstacles"], problem.scene, drawn_solid(problem.scene, centers))
     add_bodies(viewer["bodies"], tracks, view_axes(problem)[2])
     add_body_ghosts(viewer["bodies"]["later"], tracks, _LATER)
+    add_debris(viewer["bodies"]["debris"], debris)
+    for row in _LATER if debris else ():
+        add_debris(viewer["bodies"]["debris_later"][str(row)], debris, row, faint=True)
     add_zones(viewer["zones"], problem.scene, spread, radii)
     goal = problem.goal if problem.reach_attitude else straight[-1]
     add_ends(viewer, problem.robot, problem.start, goal)
@@ -60,11 +66,11 @@ def opening_page(problem: Problem, lattice: LayeredLattice | None, title: str) -
         space = f"{lattice.divisions} edges, {lattice.size} offsets a layer"
     data = {
         "title": title or f"{problem.robot.name}, {problem.mode}",
-        "subtitle": f"search over {space}, δ {problem.delta:g}{_said_of(tracks)}",
+        "subtitle": f"search over {space}, δ {problem.delta:g}{_said_of(problem)}",
         "commands": log.commands,
         "view": view,
         "trees": lattice is None,
-        "bodies": len(tracks),
+        "bodies": problem.scene.moves,
     }
     return html_page("live", data)
 
@@ -75,11 +81,12 @@ def _instants(problem: Problem) -> Array | None:
     return None if duration is None else np.linspace(0.0, duration, _INSTANTS)
 
 
-def _said_of(tracks: list[BodyTrack]) -> str:
+def _said_of(problem: Problem) -> str:
     """At which times moving bodies are drawn."""
-    if not tracks:
+    times = _instants(problem)
+    if times is None or not problem.scene.moves:
         return ""
-    later = ", ".join(f"{tracks[0].times[row]:.3g}" for row in _LATER)
+    later = ", ".join(f"{times[row]:.3g}" for row in _LATER)
     return f"; moving bodies at 0 s, faint at {later} s"
 
 

@@ -12,6 +12,7 @@ import pinocchio as pin
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_mesh, key_rows
+from ffsr_plan.display.scenes.debris_track import DebrisTrack
 from ffsr_plan.display.scenes.meshcat_objects import (
     MeshcatNode,
     instances,
@@ -43,7 +44,8 @@ def set_up(
     problem: Problem,
     centers: Array,
     radii: Array,
-    tracks: Sequence[BodyTrack] = (),
+    tracks: Sequence[BodyTrack],
+    debris: DebrisTrack,
 ) -> dict[str, Any]:
     """Set light and background, and rotate the scene so that the path runs from left to right.
 
@@ -54,6 +56,7 @@ def set_up(
             camera has to see.
         radii: (g,) their radii [m].
         tracks: bodies that move, which the camera sees where they are near all else.
+        debris: the debris.
 
     Returns:
         Size (3) of what is shown to the right, upwards and towards the viewer [m], the distance
@@ -80,7 +83,7 @@ def set_up(
         "size": (np.ptp(shown, axis=0) + _MARGIN).tolist(),
         "fov": fov,
         "elevation": math.radians(62.0),
-        "reach": farthest_shown(scene, shown, axes, tracks),
+        "reach": farthest_shown(scene, shown, axes, tracks, debris.corners()),
         "root": root.tolist(),
     }
 
@@ -125,6 +128,27 @@ def add_bodies(viewer: MeshcatNode, tracks: Sequence[BodyTrack], up: Array) -> N
             middles = track.middles()
             way = middles[key_rows(middles, 1e-2)]
             add_track(viewer["ways"][str(k)], way, 0.014, _WAY, up)
+
+
+def add_debris(viewer: MeshcatNode, debris: DebrisTrack, row: int = 0, faint: bool = False) -> None:
+    """Add all spheres of debris, where they are in one frame (row).
+
+    Args:
+        viewer: the node that receives them.
+        debris: the debris.
+        row: the frame.
+        faint: whether they are transparent.
+    """
+    import meshcat.geometry as mg
+
+    if not debris:
+        return
+    look = {"opacity": 0.2, "depthWrite": False} if faint else {"shininess": 60}
+    rings = int(np.clip(math.sqrt(_TRIANGLES / len(debris.radii) / 3.0), 6, 28))
+    spheres = instances(
+        debris.centers(row), debris.radii, rings, mg.MeshPhongMaterial(color=_MOVING, **look)
+    )
+    viewer.set_object(spheres)
 
 
 def add_body_ghosts(viewer: MeshcatNode, tracks: Sequence[BodyTrack], rows: Sequence[int]) -> None:

@@ -49,7 +49,9 @@ def shown_space(
     return np.stack([cloud.min(axis=0), cloud.max(axis=0)])
 
 
-def farthest_shown(scene: Scene, shown: Array, axes: Array, tracks: Sequence[BodyTrack]) -> float:
+def farthest_shown(
+    scene: Scene, shown: Array, axes: Array, tracks: Sequence[BodyTrack], debris: Array
+) -> float:
     """A bound on how far anything drawn is from the middle of what is shown [m].
 
     Args:
@@ -57,10 +59,11 @@ def farthest_shown(scene: Scene, shown: Array, axes: Array, tracks: Sequence[Bod
         shown: (2, 3) as of `shown_space`.
         axes: (3, 3) directions of the picture.
         tracks: bodies that move.
+        debris: (n, 3) the farthest places of debris [m].
     """
     middle, half = shown.mean(axis=0), 0.5 * np.ptp(shown, axis=0)
     ways = [track.corners().reshape(-1, 3) @ axes.T for track in tracks]
-    points = np.vstack([boxes_of(scene, axes).reshape(-1, 3), *ways])
+    points = np.vstack([boxes_of(scene, axes).reshape(-1, 3), *ways, debris @ axes.T])
     reach = np.max(np.abs(points - middle), axis=0, initial=0.0)
     return 2.0 * float(np.linalg.norm(np.maximum(reach, half)))  # planes go a little farther
 

@@ -17,6 +17,18 @@ function show(s) {
   byId("state").textContent = unit ? `${(s * end).toFixed(digits)} / ${end.toFixed(digits)} ${unit}`
     : `${symbol} ${s.toFixed(3)}`;
 }
+// Spheres of debris are instances of one object; in `data.drifts` is how far each goes in all.
+if (data.drifts.length) {
+  const spheres = viewer.scene_tree.find(["meshcat", "bodies", "debris", "<object>"]).object;
+  const placed = spheres.instanceMatrix.array, first = Float32Array.from(placed);
+  updates.push(s => {
+    data.drifts.forEach((way, k) => {
+      for (let a = 0; a < 3; a++) placed[16 * k + 12 + a] = first[16 * k + 12 + a] + s * way[a];
+    });
+    spheres.instanceMatrix.needsUpdate = true;
+    viewer.set_dirty();
+  });
+}
 function play(on) { playing = on; last = 0; button.innerHTML = on ? "&#10074;&#10074;" : "&#9654;"; }
 function frame(now) {
   if (playing) {

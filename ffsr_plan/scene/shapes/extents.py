@@ -41,3 +41,23 @@ def _extent(shape: ObstacleShape, axes: Array) -> Array:
     else:
         reach = np.abs(local) @ shape.half_sides + shape.skin
     return np.stack([place - reach, place + reach])
+
+
+def bounds_of(
+    centers: Array, radii: Array, shapes: Sequence[ObstacleShape], growth: float
+) -> Array:
+    """Least and greatest coordinates of spheres and shapes.
+
+    Args:
+        centers: (n, 3) of the spheres [m].
+        radii: (n,) of the spheres [m].
+        shapes: the shapes.
+        growth: distance by which the shapes are grown [m].
+
+    Returns:
+        (2, 3) [m]; (0, 3) without any.
+    """
+    ends = extents(shapes)
+    low = np.vstack([centers - radii[:, None], ends[:, 0] - growth])
+    high = np.vstack([centers + radii[:, None], ends[:, 1] + growth])
+    return np.stack([low.min(axis=0), high.max(axis=0)]) if len(low) else np.zeros((0, 3))

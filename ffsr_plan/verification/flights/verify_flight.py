@@ -104,9 +104,9 @@ def verify_flight(flight: Flown, clearance: float) -> FlightReport:
     Raises:
         InvalidInput: bodies of the scene move; flights past them are not made.
     """
-    if flight.problem.scene.bodies:
+    if flight.problem.scene.moves:
         allowed = "a scene at rest for a flight; a plan past bodies that move verifies by itself"
-        raise InvalidInput("scene bodies", list(flight.problem.scene.bodies), allowed)
+        raise InvalidInput("scene bodies", list(flight.problem.scene.moving), allowed)
     robot = flight.problem.robot
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
     used = used_limits(flight)

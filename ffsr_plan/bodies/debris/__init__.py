@@ -1,0 +1,1 @@
+"""Clouds of spheres that drift, and one tree over all of them."""

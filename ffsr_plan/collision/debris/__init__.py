@@ -1,0 +1,1 @@
+"""Distances to spheres that drift, at any time."""
