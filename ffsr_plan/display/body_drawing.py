@@ -217,7 +217,8 @@ def discs(
     sizes = 2.0 * debris.radii[order]
     return EllipseCollection(
         sizes, sizes, np.zeros(len(sizes)), units="xy", offsets=centers[order] @ view.T,
-        offset_transform=ax.transData, facecolor=colour, edgecolor="none", alpha=0.75, zorder=zorder,
+        offset_transform=ax.transData, facecolor=colour, edgecolor="none", alpha=0.75,
+        zorder=zorder,
     )  # fmt: skip
 
 

@@ -99,15 +99,12 @@ def path_figure(
     style = Style(_OF_PATH, colours, labels)
     problem, scene = plan.problem, plan.problem.scene
     samples = sample_plan(plan, _SAMPLES)
-    track, bodies = samples.frames, body_tracks(scene, samples.times)
-    debris = debris_track(scene, samples.times)
+    track = samples.frames
     rows = np.linspace(0.0, _SAMPLES - 1.0, count).round().astype(int).tolist()
     solid = drawn_solid(scene, track.bounding_spheres()[0])
     if one_of("view", view, (*VIEWS, "3d")) == "3d":
-        return spatial_figure(
-            problem, track, rows, solid, style, ax, _path_title(plan), bodies,
-            debris,
-        )  # fmt: skip
+        title = _path_title(plan)
+        return spatial_figure(problem, track, rows, solid, style, ax, title, samples.times)
     axes = view_axes(problem)[list(VIEWS[view])]
     own_figure = ax is None
     figure, ax = axes_or_new(ax, 9.0, 4.6)
@@ -119,6 +116,7 @@ def path_figure(
     mark_ends(ax, style)
     if samples.times is not None and scene.moves:
         times = write_times(ax, across, chosen_rows(rows), samples.times)
+        bodies, debris = body_tracks(scene, samples.times), debris_track(scene, samples.times)
         draw_bodies(ax, bodies, chosen_rows(rows), axes[:2], style, times)
         draw_debris(ax, debris, chosen_rows(rows), axes[:2], style)
     if not solid.all():

@@ -20,7 +20,8 @@ from ffsr_plan.display.body_drawing import (
     timed_labels,
 )
 from ffsr_plan.display.path_drawing import NUMBERED, mark_ends
-from ffsr_plan.display.scenes.body_tracks import BodyTrack, points_near
+from ffsr_plan.display.scenes.body_tracks import BodyTrack, body_tracks, points_near
+from ffsr_plan.display.scenes.debris_track import DebrisTrack, debris_track
 from ffsr_plan.display.scenes.projection import hull_points, view_axes
 from ffsr_plan.display.scenes.shape_outlines import (
     labels,
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
 
     from ffsr_plan.core.arrays import Array, Flags
     from ffsr_plan.display.figure_style import Style
-    from ffsr_plan.display.scenes.debris_track import DebrisTrack
     from ffsr_plan.display.scenes.picture_data import MotionFrames
     from ffsr_plan.problem.problem import Problem
     from ffsr_plan.scene.shapes.keep_in_zones import Zone
@@ -107,8 +107,7 @@ def spatial_figure(
     style: Style,
     ax: Axes | None = None,
     title: str = "",
-    bodies: Sequence[BodyTrack] = (),
-    debris: DebrisTrack | None = None,
+    times: Array | None = None,
 ) -> Figure:
     """Obstacles, the robot at several times and the track of its base in perspective.
 
@@ -120,12 +119,13 @@ def spatial_figure(
         style: has `path`, `start`, `goal`, `robot`, `obstacles`, `bodies` and `zones`.
         ax: axes to draw on, with `projection="3d"`; by default those of a new figure.
         title: of the figure.
-        bodies: those that move, drawn at up to five of the times of the rows.
-        debris: likewise, where it is near all else.
+        times: (N,) of the poses [s]; bodies are drawn at up to five of those of the rows, and
+            debris where it is near all else. None where nothing moves.
 
     Raises:
-        InvalidInput: axes that are not in 3-D.
+        InvalidInput: axes that are not in 3-D, or something moves and there are no times.
     """
+    bodies, debris = body_tracks(problem.scene, times), debris_track(problem.scene, times)
     figure, ax3 = _axes_in_space(ax)
     faces, scene = _Faces([], []), problem.scene
     ball, count, near = _ball(10), len(scene.radii), solid[: len(scene.radii)]
@@ -141,8 +141,7 @@ def spatial_figure(
     cloud = np.vstack([cloud, points_near(bodies, cloud, np.eye(3))])
     faces.add_bodies(bodies, chosen_rows(rows), style.colour("bodies"))
     low, high = cloud.min(axis=0), cloud.max(axis=0)
-    if debris:
-        faces.add_debris(debris, chosen_rows(rows), (low, high), style.colour("bodies"))
+    faces.add_debris(debris, chosen_rows(rows), (low, high), style.colour("bodies"))
     track = frames.origins[:, 0]
     faces.add_bright(_tube(track, _TRACK_WIDTH * float(np.max(high - low))), style.colour("path"))
     _draw(ax3, faces)
@@ -155,9 +154,8 @@ def spatial_figure(
         for label in labels(scene):
             x, y, z = *label.at[:2], label.top + 0.02 * float(np.max(high - low))
             ax3.text(x, y, z, label.text, ha="center", fontsize=8)
-    if bodies or debris:
-        times = bodies[0].times if bodies else np.asarray(debris.times if debris else ())
-        _write_times(ax3, times, bodies, frames, chosen_rows(rows), (low, high), style)
+    if scene.moves:
+        _write_times(ax3, debris.times, bodies, frames, chosen_rows(rows), (low, high), style)
     _set_view(ax3, problem, low, high)
     _draw_zones(ax3, scene.keep_in, low, high, style)
     columns = 4 if scene.keep_in or scene.moves else 3

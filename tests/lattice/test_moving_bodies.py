@@ -17,6 +17,15 @@ def test_the_optimum_past_moving_bodies_is_the_best_of_all_paths(seed, mode):
     assert equal
 
 
+@pytest.mark.parametrize(
+    ("seed", "mode"), [(0, "free-flying"), (2, "attitude-held"), (7, "free-flying")]
+)
+def test_the_optimum_past_debris_is_the_best_of_all_paths(seed, mode):
+    equal, found = agree(small_problem(seed, mode, debris=True))
+    assert equal
+    assert found
+
+
 def test_bodies_that_move_need_a_duration_that_their_motions_know():
     problem = small_problem(0)
     changed = {"duration": None, "ramp": 0.0}

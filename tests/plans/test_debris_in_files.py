@@ -82,12 +82,12 @@ def test_debris_of_a_scenario_is_that_of_python(tmp_path, validator):  # noqa: F
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("radii = [0.1, 0.2]", "radii = [0.1, -1.0]", "debris.1: debris cloud 'bolts', radii, sphere 1"),
+        ("radii = [0.1, 0.2]", "radii = [0.1, -1.0]", "debris.1: .* 'bolts', radii, sphere 1"),
         ("radii = [0.1, 0.2]\n", "", "radii"),
         ('name = "bolts"', 'names = "bolts"', "name"),
         ('csv = "debris.csv"', 'csv = "gone.csv"', "debris.0"),
     ],
-)  # fmt: skip
+)
 def test_a_wrong_table_is_named(tmp_path, old, new, words):
     with pytest.raises(fp.InvalidInput, match=words):
         loaded(tmp_path, DEBRIS.replace(old, new))

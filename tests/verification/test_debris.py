@@ -37,7 +37,8 @@ def test_a_sphere_in_the_way_is_found_and_named(flown):
     time = 0.4 * DURATION
     there, velocity = flown.at(0.4)[:3], np.array((0.0, 0.8, 0.0))
     far = cloud_about(5, 30, name="far")
-    centers = np.vstack([far.centers + (0.0, 60.0, 0.0), there - time * velocity])
+    away = far.centers + np.array((0.0, 60.0, 0.0))
+    centers = np.vstack([away, there - time * velocity])
     drifts = np.vstack([far.velocities, velocity])
     hit = fp.DebrisCloud(centers, np.append(far.radii, 0.05), drifts, "hit")
     report = among(flown, hit).verify()
