@@ -35,7 +35,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ffsr_plan.core.arrays import Array
+    from ffsr_plan.display.scenes.plan_samples import PlanSamples
     from ffsr_plan.plans.plan_data import PlanData
+    from ffsr_plan.problem.problem import Problem
 
 _ANTS, _TREES = "ants' trails, darker with more pheromone", "trees from start (dark) and goal"
 _SAMPLES = 401  # of the base's track
@@ -103,8 +105,8 @@ def path_figure(
     rows = np.linspace(0.0, _SAMPLES - 1.0, count).round().astype(int).tolist()
     solid = drawn_solid(scene, track.bounding_spheres()[0])
     if one_of("view", view, (*VIEWS, "3d")) == "3d":
-        title = _path_title(plan)
-        return spatial_figure(problem, track, rows, solid, style, ax, title, samples.times)
+        said = _path_title(plan)
+        return spatial_figure(problem, track, rows, solid, style, ax, said, samples.times)
     axes = view_axes(problem)[list(VIEWS[view])]
     own_figure = ax is None
     figure, ax = axes_or_new(ax, 9.0, 4.6)
@@ -115,10 +117,7 @@ def path_figure(
     ax.plot(*across.T, color=style.colour("path"), lw=1.8, zorder=6, label=style.label("path"))
     mark_ends(ax, style)
     if samples.times is not None and scene.moves:
-        times = write_times(ax, across, chosen_rows(rows), samples.times)
-        bodies, debris = body_tracks(scene, samples.times), debris_track(scene, samples.times)
-        draw_bodies(ax, bodies, chosen_rows(rows), axes[:2], style, times)
-        draw_debris(ax, debris, chosen_rows(rows), axes[:2], style)
+        _draw_moving(ax, problem, samples, across, chosen_rows(rows), axes[:2], style)
     if not solid.all():
         _name_faint(ax, style)
     name_directions(ax, problem, view, _leaves_plane(plan))
@@ -126,6 +125,21 @@ def path_figure(
     ax.set_title(_path_title(plan))
     _add_legend(figure, ax, own_figure, 4 if scene.moves else 5)
     return figure
+
+
+def _draw_moving(
+    ax: Axes,
+    problem: Problem,
+    samples: PlanSamples,
+    across: Array,
+    rows: list[int],
+    view: Array,
+    style: Style,
+) -> None:
+    """Bodies and debris in frames `rows`, and times at the base origin `across` (N, 2)."""
+    times = write_times(ax, across, rows, np.asarray(samples.times))
+    draw_bodies(ax, body_tracks(problem.scene, samples.times), rows, view, style, times)
+    draw_debris(ax, debris_track(problem.scene, samples.times), rows, view, style)
 
 
 def clearance_figure(

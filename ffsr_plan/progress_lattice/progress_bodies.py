@@ -13,9 +13,9 @@ from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.progress_lattice.progress_steps import ProgressSteps
 from ffsr_plan.proof.body_edge import BodyEdge, DebrisProof, Passages
-from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify
+from ffsr_plan.proof.interval_halving import ROUNDING, Verdict
 from ffsr_plan.proof.motion_edges import NominalPlacements
-from ffsr_plan.proof.moving_obstacles import POSE_ERROR, worse
+from ffsr_plan.proof.moving_obstacles import POSE_ERROR, BodyProof, worse
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -46,12 +46,14 @@ class ProgressBodies:
         self._base_steps = motion.base_steps()
         scenes = scene.body_scenes
         self._queries = [ObstacleQuery(motion.robot, each, deadline) for each in scenes]
+        errors = [iteration_error(motion.robot, each) for each in scenes]
+        self._proofs = [
+            BodyProof(motion, each, self._travel, error == 0.0)
+            for each, error in zip(scenes, errors, strict=True)
+        ]
         self._roundings = [
-            ROUNDING
-            + self._travel.attitude_error
-            + POSE_ERROR * (1.0 + body.reach)
-            + iteration_error(motion.robot, each)
-            for body, each in zip(self._bodies, scenes, strict=True)
+            ROUNDING + self._travel.attitude_error + POSE_ERROR * (1.0 + body.reach) + error
+            for body, error in zip(self._bodies, errors, strict=True)
         ]
         times = pace.instants(np.arange(pace.edges + 1.0))
         self._ways = np.array(
@@ -137,7 +139,7 @@ class ProgressBodies:
                         int(edges[k]), (tails[k], heads[k]), moved[k], self._pace,
                         self._roundings[b], int(layers[k]),
                     )  # fmt: skip
-                    found = certify(edge, ends, tolerance)
+                    found = self._proofs[b].certify(edge, ends, tolerance)
                 verdicts[k] = worse(verdicts[k], found)
         if self._debris is not None:
             run = Passages(edges, layers, tails, heads, moved, places)

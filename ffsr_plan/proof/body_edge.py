@@ -14,7 +14,8 @@ costs nothing.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.debris.debris_distances import DebrisDistances
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
+from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import Verdict, certify, clearance_bound
@@ -34,6 +36,9 @@ from ffsr_plan.proof.motion_edges import NominalPlacements
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
+
+if TYPE_CHECKING:
+    from ffsr_plan.proof.kernels.passage import Passage
 
 PLACE_ERROR = 1e-9
 """Of a sphere's place [m]."""
@@ -117,6 +122,31 @@ class BodyEdge:
     def margins(self, begin: float, end: float, ways: Array) -> Array:
         """See `interval_halving.Edge`."""
         return self.parts(begin) + self.parts(end) - ways
+
+    @property
+    def ends(self) -> tuple[int, Array, Array]:
+        """The edge of the nominal motion, and the offsets (3,) at both ends [m]."""
+        return self._layer, *self._offsets
+
+    def tabulate(self, passage: Passage) -> None:
+        """Fill in the body's poses and ways over the edge, and its displacement."""
+        count, motion = len(passage.poses) - 1, self._body.motion
+        places = self._slot + np.arange(count + 1) / count
+        times = self._pace.instants(places)
+        poses = self._body.poses(times)
+        passage.poses[:, :9] = rotations.matrix(poses.attitudes).reshape(-1, 9)
+        passage.poses[:, 9:] = poses.positions
+        passage.step[:] = 0.0
+        if isinstance(motion, (Drift, Spin, Tumble)) and self._watched:
+            passage.step[:] = motion.velocity * (times[-1] - times[0])
+        bound = self._body.travel
+        if self._watched:
+            bound = lambda begin, end: motion.turned(begin, end) * self._body.reach  # noqa: E731
+        parts = 1
+        while parts <= count:
+            at = times[:: count // parts].tolist()
+            passage.ways[parts : 2 * parts] = [bound(*pair) for pair in pairwise(at)]
+            parts *= 2
 
     def _in_body(self, time: float) -> Placements:
         """The placement of the shapes in the body's axes, the only one."""

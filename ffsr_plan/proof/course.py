@@ -17,17 +17,22 @@ from ffsr_plan.scene.scene import Scene
 
 if TYPE_CHECKING:
     from ffsr_plan.proof.kernels.course import Course
+    from ffsr_plan.proof.kernels.passage import Passage
 
 
-def course_of(motion: Motion | CurvedMotion, scene: Scene, travel: EdgeTravel) -> Course:
+def course_of(
+    motion: Motion | CurvedMotion, scene: Scene, travel: EdgeTravel, passage: Passage | None = None
+) -> Course:
     """The arrays of a motion.
 
     Args:
         motion: the motion that offsets are counted from.
         scene: at least one obstacle.
         travel: travel bounds along the motion.
+        passage: the body that the obstacles are shapes of, if it moves.
     """
     from ffsr_plan.proof.kernels.course import Course
+    from ffsr_plan.proof.kernels.passage import no_passage
 
     robot, reacts = motion.robot, motion.mode.attitude_reacts
     whole, straight = travel.over(0.0, 1.0)
@@ -54,6 +59,7 @@ def course_of(motion: Motion | CurvedMotion, scene: Scene, travel: EdgeTravel) -
         whole.points,
         straight,
         pieces,
+        passage or no_passage(),
     )
 
 
@@ -65,6 +71,7 @@ def course_in_base(motion: Motion | CurvedMotion, travel: EdgeTravel) -> Course:
         travel: travel bounds along it.
     """
     from ffsr_plan.proof.kernels.course import Course
+    from ffsr_plan.proof.kernels.passage import no_passage
     from ffsr_plan.proof.kernels.travel import BaseMotion
 
     whole, straight = travel.over(0.0, 1.0, in_base=True)
@@ -83,6 +90,7 @@ def course_in_base(motion: Motion | CurvedMotion, travel: EdgeTravel) -> Course:
         motion.pieces_in_base
         if isinstance(motion, CurvedMotion)
         else straight_pieces(motion.robot.nd),
+        no_passage(),
     )
 
 

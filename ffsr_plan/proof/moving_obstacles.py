@@ -7,6 +7,8 @@ clearance by x at most.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ffsr_plan.bodies.pace import Pace
@@ -14,10 +16,11 @@ from ffsr_plan.collision.body_distances import BodyDistances, in_axes
 from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
-from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.arrays import Array, IntArray, frozen, records
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.body_edge import BodyEdge, DebrisProof, Passages
+from ffsr_plan.proof.course import course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import NominalPlacements, odd_times
@@ -26,6 +29,79 @@ from ffsr_plan.time_limit.deadline import Deadline
 
 POSE_ERROR = 1e-9
 """Of a body's attitude [rad] and of its place [m]."""
+_PLACES = 64  # parts of an edge over which a body is tabulated; proofs on shorter ones take Coal
+
+
+class BodyProof:
+    """Proofs past one body: compiled ones where distances in closed form decide."""
+
+    def __init__(
+        self, motion: Motion | CurvedMotion, shapes: Scene, travel: EdgeTravel, exact: bool
+    ) -> None:
+        """Prepare the proofs.
+
+        Args:
+            motion: the motion from which offsets are counted.
+            shapes: the body's shapes along its own axes.
+            travel: travel bounds along the motion.
+            exact: whether distances to all of them are closed forms.
+        """
+        self._of, self._exact = (motion, shapes, travel), exact
+        self._kept: tuple[Any, ...] | None = None
+
+    @property
+    def _compiled(self) -> tuple[Any, ...]:
+        """Arrays of the motion past the body, and memory for its edges."""
+        if self._kept is None:
+            from ffsr_plan.proof.kernels import course, edge_proof, passage, path_clearance
+
+            own = passage.Passage(np.empty((_PLACES + 1, 12)), np.empty(2 * _PLACES), np.zeros(3))
+            past = course_of(*self._of, own)
+            more = edge_proof.intervals_for(past), path_clearance.parts_for(past)
+            self._kept = past, course.memory_for(past), *more
+        return self._kept
+
+    def certify(self, edge: BodyEdge, ends: tuple[float, float], tolerance: float) -> Verdict:
+        """Prove that the body does not touch the robot on an edge, or refuse it.
+
+        Args:
+            edge: the edge.
+            ends: clearances at its ends [m].
+            tolerance: clearance below which it may be refused [m].
+        """
+        from ffsr_plan.proof.kernels import edge_proof
+
+        past, memory, intervals, _ = self._compiled
+        edge.tabulate(past.passage)
+        row = records(edge_proof.EDGE, 1)
+        row["layer"], row["tail"], row["head"] = edge.ends
+        row["ends"] = ends
+        speeds = self._of[2].speeds
+        edge_proof.prove(past, speeds, row, edge.rounding, tolerance, memory, intervals)
+        (state, least, time, count) = row[["state", "least", "time", "count"]].tolist()[0]
+        if state == edge_proof.PROVEN:
+            return Verdict(True, least, time, count)
+        if state == edge_proof.TOUCHED and self._exact:
+            touched = edge.clearance(time)
+            if touched <= 0.0:
+                return Verdict(False, touched, time, count)
+        return certify(edge, ends, tolerance)
+
+    def clearance_bound(
+        self, edge: BodyEdge, ends: tuple[float, float], least: float, precision: float
+    ) -> tuple[float, float]:
+        """A lower bound on the clearance along an edge; see `interval_halving.clearance_bound`."""
+        if not self._exact:
+            return clearance_bound(edge, ends, least, precision)
+        from ffsr_plan.proof.kernels.path_clearance import edge_clearance
+
+        past, memory, _, parts = self._compiled
+        edge.tabulate(past.passage)
+        numbers = edge.rounding, precision, edge.speed
+        bound, found = edge_clearance(past, *edge.ends, numbers, min(least, *ends), memory, parts)
+        if found - bound > max(precision * found, edge.rounding):  # it takes shorter intervals
+            return clearance_bound(edge, ends, least, precision)
+        return min(bound, found), found
 
 
 class MovingObstacles:
@@ -66,9 +142,14 @@ class MovingObstacles:
         self._robot, scenes = motion.robot, scene.body_scenes
         self._queries = [ObstacleQuery(motion.robot, each, deadline) for each in scenes]
         self._first = len(scene.at_rest)
+        errors = [iteration_error(motion.robot, each) for each in scenes]
+        self._proofs = [
+            BodyProof(motion, each, travel, error == 0.0)
+            for each, error in zip(scenes, errors, strict=True)
+        ]
         self._roundings = [
-            rounding + POSE_ERROR * (1.0 + body.reach) + iteration_error(motion.robot, each)
-            for body, each in zip(self._bodies, scenes, strict=True)
+            rounding + POSE_ERROR * (1.0 + body.reach) + error
+            for body, error in zip(self._bodies, errors, strict=True)
         ]
         ends = pace.instants(np.arange(motion.edges + 1.0)).tolist()
         self._ways = np.array(
@@ -138,7 +219,8 @@ class MovingObstacles:
             for k, pair in zip(left.tolist(), zip(first, last, strict=True), strict=True):
                 if verdicts[k].free and sum(pair) <= ways[k]:
                     edge = self._edge(b, int(layers[k]), tails[k], heads[k])
-                    found = certify(edge, (float(pair[0]), float(pair[1])), tolerance)
+                    own = float(pair[0]), float(pair[1])
+                    found = self._proofs[b].certify(edge, own, tolerance)
                     verdicts[k] = worse(verdicts[k], found)
         if self._debris is None:
             return verdicts
@@ -175,7 +257,7 @@ class MovingObstacles:
             for layer in np.flatnonzero(margins < 2.0 * least).tolist():
                 ends = float(clearances[layer]), float(clearances[layer + 1])
                 edge = self._edge(b, layer, offsets[layer], offsets[layer + 1])
-                found, least = clearance_bound(edge, ends, least, precision)
+                found, least = self._proofs[b].clearance_bound(edge, ends, least, precision)
                 bound = min(bound, found)
         if self._debris is None:
             return bound

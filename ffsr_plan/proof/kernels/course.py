@@ -20,6 +20,7 @@ from ffsr_plan.dynamics.kernels.bodies import move_links, norm_of, weigh_links
 from ffsr_plan.dynamics.kernels.quaternions import fill_matrix, multiply, normalise, turn_by
 from ffsr_plan.dynamics.kernels.rotation_series import Partial, rotation_at
 from ffsr_plan.proof.kernels.curved_travel import bound_curved_travel
+from ffsr_plan.proof.kernels.passage import Passage, see_from_body, way_over
 from ffsr_plan.proof.kernels.travel import (
     TRAVEL,
     BaseMotion,
@@ -69,6 +70,7 @@ class Course(NamedTuple):
         straight: (m,) whether that travel bounds parts of an edge too.
         pieces: the edges where they are curved, in place of positions and joint values; none where
             they are straight.
+        passage: the body in whose axes the obstacles rest, on the edge that is looked at.
     """
 
     bodies: Records
@@ -83,6 +85,7 @@ class Course(NamedTuple):
     whole: Records
     straight: Flags
     pieces: Pieces
+    passage: Passage
 
 
 class Memory(NamedTuple):
@@ -95,7 +98,7 @@ class Memory(NamedTuple):
         joints: (4, nd) joint values, and their change over the edge; on curved edges also bounds on
             their first and second derivatives.
         quats: (3, 4) attitude, and room for two others.
-        vectors: (3, 3) base origin, displacement of it over the edge, and offset of it [m].
+        vectors: (4, 3) base origin, displacement of it over the edge, offset of it, and zeros [m].
         stack: of the search for spheres.
         bounds: of the search for spheres.
         nearest: (g,) the sphere that was nearest to each shape last.
@@ -127,7 +130,7 @@ def memory_for(course: Course) -> Memory:
         frames,
         np.empty((4, course.values.shape[1])),
         np.empty((3, 4)),
-        np.zeros((3, 3)),
+        np.zeros((4, 3)),
         np.empty(STACK_SIZE, np.int32),
         np.empty(STACK_SIZE),
         np.zeros(shapes, np.int64),
@@ -244,6 +247,15 @@ def measure(
         The least of them [m].
     """
     place_shapes(course, layer, time, memory)
+    if len(course.passage.poses) > 0:
+        see_from_body(course.passage, time, shift, memory.frames)
+        return _search(course, memory.vectors[3], memory, found)
+    return _search(course, shift, memory, found)
+
+
+@kernel
+def _search(course: Course, shift: Array, memory: Memory, found: Array) -> float:
+    """Distances of placed shapes (g,), filled in, and the least of them [m]."""
     least, nearest = np.inf, memory.nearest
     tree, stack, bounds = course.tree, memory.stack, memory.bounds
     for i in range(len(found)):
@@ -290,7 +302,7 @@ def travel_of_shapes(
     elif length < 1.0:
         away = abs(0.5 * (begin + end) - 0.5)
     step, shapes = memory.vectors[1], course.shapes
-    base_speed = norm_of(step)
+    base_speed, more = norm_of(step), way_over(course.passage, begin, end)
     for i in range(len(shapes)):
         longest = 0.0
         for k in range(shapes[i].first, shapes[i].end):
@@ -302,4 +314,4 @@ def travel_of_shapes(
             else:
                 way = min(length * fastest + point.curvature, length * coarse)
             longest = max(longest, way + point.attitude_error)
-        ways[i] = longest
+        ways[i] = longest + more

@@ -14,6 +14,7 @@ from ffsr_plan.core.arrays import Array, Records
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.dynamics.kernels.bodies import norm_of
 from ffsr_plan.proof.kernels.course import Course, Memory, measure, travel_of_shapes
+from ffsr_plan.proof.kernels.passage import is_finest, way_over
 
 OPEN, PROVEN, TOUCHED = 0, 1, 2
 """What became of an edge: left to Coal; free; a configuration was found that touches."""
@@ -79,6 +80,7 @@ def set_step(course: Course, layer: int, tail: Array, head: Array, memory: Memor
     begin, end, step = course.positions[layer], course.positions[layer + 1], memory.vectors[1]
     for a in range(3):
         step[a] = 0.0 if course.base.floats else end[a] - begin[a] + head[a] - tail[a]
+        step[a] -= course.passage.step[a]
     return norm_of(step)
 
 
@@ -106,6 +108,7 @@ def prove(
     for k in range(len(edges)):
         edge, ends = edges[k], edges[k].ends
         step = set_step(course, edge.layer, edge.tail, edge.head, memory)
+        step += way_over(course.passage, 0.0, 1.0)
         edge.least, edge.time = ends[0], 0.0
         if ends[1] < ends[0]:
             edge.least, edge.time = ends[1], 1.0
@@ -146,6 +149,8 @@ def _halve(
             depth -= 1
             continue
         if longest(ways) <= 2.0 * max(tolerance, rounding) or depth >= _DEEPEST:
+            return
+        if is_finest(course.passage, end - begin):
             return
         middle = 0.5 * (begin + end)
         for a in range(3):

@@ -10,6 +10,7 @@ from ffsr_plan.core.arrays import Array, Records, records
 from ffsr_plan.core.kernels.compilation import kernel
 from ffsr_plan.proof.kernels.course import Course, Memory, measure, travel_of_shapes
 from ffsr_plan.proof.kernels.edge_proof import set_step
+from ffsr_plan.proof.kernels.passage import is_finest
 
 _MOST_PARTS = 1024  # of an edge; with more the bound stays what it is by then
 
@@ -90,6 +91,39 @@ def path_clearance(
 
 
 @kernel
+def edge_clearance(
+    course: Course,
+    layer: int,
+    tail: Array,
+    head: Array,
+    numbers: tuple[float, float, float],
+    least: float,
+    memory: Memory,
+    parts: Parts,
+) -> tuple[float, float]:
+    """A proven lower bound on the clearance along one edge of a path.
+
+    Args:
+        course: the motion that offsets are counted from.
+        layer: the edge.
+        tail: (3,) offset at its start [m].
+        head: (3,) offset at its end [m].
+        numbers: the rounding [m], the relative precision, and a bound on the speed of any point
+            over the edge, the base's own included [m].
+        least: the least clearance met on the path so far [m].
+        memory: scratch memory.
+        parts: scratch memory.
+
+    Returns:
+        The bound, and the least clearance met, this edge included [m].
+    """
+    set_step(course, layer, tail, head, memory)
+    first = measure(course, layer, 0.0, tail, memory, parts.distances[0])
+    last = measure(course, layer, 1.0, head, memory, parts.distances[1])
+    return _refined(course, layer, tail, head, numbers, min(least, first, last), memory, parts)
+
+
+@kernel
 def _refined(
     course: Course,
     layer: int,
@@ -112,6 +146,8 @@ def _refined(
                 k = other
         lowest, part = rows[k].bound, rows[k]
         if least - lowest <= max(precision * least, rounding) or count > _MOST_PARTS - 1:
+            return lowest, least
+        if is_finest(course.passage, part.end - part.begin):
             return lowest, least
         middle = 0.5 * (part.begin + part.end)
         for a in range(3):
