@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
+from benchmarks.studies.moving.debris import COUNTS, debris, problem_in
 
 
 def drifting(count):
@@ -31,3 +32,16 @@ def test_scenario_with_bodies(benchmark, scenario):
     problem = fp.load_scenario(scenario)
     fp.plan(problem)
     benchmark(lambda: fp.plan(problem))
+
+
+@pytest.mark.parametrize("count", [1000, 10_000])
+def test_optimum_of_the_paper_through_debris(benchmark, count):
+    problem = problem_in(debris(0, count, COUNTS[count]))
+    fp.plan(problem, "lattice-optimum", refine=False)
+    benchmark(lambda: fp.plan(problem, "lattice-optimum", refine=False))
+
+
+def test_verification_of_a_plan_through_debris(benchmark):
+    plan = fp.plan(problem_in(debris(0, 10_000, COUNTS[10_000])), "lattice-optimum", refine=False)
+    plan.verify()
+    benchmark(plan.verify)

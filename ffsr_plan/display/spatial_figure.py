@@ -119,8 +119,7 @@ def spatial_figure(
         style: has `path`, `start`, `goal`, `robot`, `obstacles`, `bodies` and `zones`.
         ax: axes to draw on, with `projection="3d"`; by default those of a new figure.
         title: of the figure.
-        times: (N,) of the poses [s]; bodies are drawn at up to five of those of the rows, and
-            debris where it is near all else. None where nothing moves.
+        times: (N,) of the poses [s]; what moves is drawn at up to five of those of the rows.
 
     Raises:
         InvalidInput: axes that are not in 3-D, or something moves and there are no times.

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from ffsr_plan.collision.contacts import goal_in_collision, start_in_collision
-from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
+from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
@@ -50,7 +50,6 @@ class ProgressRoadmap:
         self.problem = problem
         scene, m = problem.obstacles, problem.given_lattice.divisions
         self.steps, lattice = ProgressSteps(problem), LayeredLattice(problem)
-        self._check_ends()
         self.lattice, self.offsets, self.origin = lattice, lattice.offsets, lattice.origin
         self.heads, self._asides = self._steps_aside(lattice)
         self._prover = Prover(self.steps.motion, scene.at_rest, problem.tolerance, deadline)
@@ -70,6 +69,7 @@ class ProgressRoadmap:
             self._bodies = ProgressBodies(self.steps, scene, pace, self.offsets, deadline)
         moving = m if self._bodies else 0
         self.moving: States = np.zeros((moving, *shape), dtype=np.int8)
+        self._check_ends(m)
         self._bounds: Array = np.tile(self._still, (m + 1, 1, 1))
         self._known: Flags = np.full(self._bounds.shape, self._bodies is None)
         self._distances = np.array(lattice.distances)
@@ -213,16 +213,20 @@ class ProgressRoadmap:
         ways = (np.array(moves).reshape(len(moves), -1) * spacing) @ lattice.directions
         return np.array(heads, dtype=np.int64), ways
 
-    def _check_ends(self) -> None:
-        """Raise if start or goal touches something at its time."""
+    def _check_ends(self, last: int) -> None:
+        """Raise if start or goal, on the layers 0 and `last`, touches something at its time."""
         problem, steps = self.problem, self.steps
         robot, scene = problem.robot, problem.obstacles
-        ends = steps.motion.configurations()[steps.corners[[steps.start, steps.goal]]]
+        layers, places = np.array([0, last]), np.array([steps.start, steps.goal])
+        origins = np.full(2, self.origin)
+        clear = self._still[places, origins]
+        if self._bodies is not None:
+            clear = self._bodies.least(layers, places, origins, clear)
+        ends = steps.motion.configurations()[steps.corners[places]]
         for k, (q, time) in enumerate(zip(ends, (0.0, problem.duration or 0.0), strict=True)):
-            there = scene.at(time)
-            near = ObstacleQuery(robot, there).nearest(q), SelfQuery(robot).nearest(q)
-            if min(each.distance for each in near) > 0.0:
+            if clear[k] > 0.0 and SelfQuery(robot).nearest(q).distance > 0.0:
                 continue
+            there = scene.at(time)
             if k:
                 raise goal_in_collision(robot, there, q)
             raise start_in_collision(robot, there, q)

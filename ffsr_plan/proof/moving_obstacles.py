@@ -219,8 +219,8 @@ class MovingObstacles:
             for k, pair in zip(left.tolist(), zip(first, last, strict=True), strict=True):
                 if verdicts[k].free and sum(pair) <= ways[k]:
                     edge = self._edge(b, int(layers[k]), tails[k], heads[k])
-                    own = float(pair[0]), float(pair[1])
-                    found = self._proofs[b].certify(edge, own, tolerance)
+                    both = float(pair[0]), float(pair[1])
+                    found = self._proofs[b].certify(edge, both, tolerance)
                     verdicts[k] = worse(verdicts[k], found)
         if self._debris is None:
             return verdicts

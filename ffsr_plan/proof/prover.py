@@ -335,7 +335,10 @@ class Prover:
             GoalInCollision: with all that touches there.
         """
         robot, goal, still = self._motion.robot, self._motion.edges, np.zeros(3)
-        for layer in (0, goal):
+        clear = self.clearances(np.array([0, goal]), np.zeros((2, 3))) > 0.0
+        for layer, is_clear in zip((0, goal), clear.tolist(), strict=True):
+            if is_clear and self.links.nearest(layer, 0.0).distance > 0.0:
+                continue
             pairs = [
                 self._obstacles.nearest_at(self._corners, layer, still),
                 self.links.nearest(layer, 0.0),

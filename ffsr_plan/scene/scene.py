@@ -35,6 +35,7 @@ from ffsr_plan.scene.scene_contents import (
     refuse_members,
     row_count,
     source_title,
+    with_spheres,
 )
 from ffsr_plan.scene.shapes.extents import bounds_of
 from ffsr_plan.scene.shapes.keep_in_zones import ZONES, Zone
@@ -293,7 +294,7 @@ class Scene:
     @cached_property
     def body_scenes(self) -> tuple[Scene, ...]:
         """The shapes of each body along its own axes, at rest there, grown like all others."""
-        return tuple(Scene(shapes=body.shapes, growth=self.growth) for body in self.bodies)
+        return tuple(Scene(**with_spheres(each.shapes, self.growth)) for each in self.bodies)
 
     def at(self, time: float) -> Scene:
         """All obstacles where they are at one time, at rest there.
@@ -302,8 +303,7 @@ class Scene:
             time: [s], up to which the motions of all bodies are known.
 
         Returns:
-            A scene whose spheres are those of this one, then those of the debris, and whose shapes
-            are those of this one, then those of the bodies.
+            A scene of the same spheres, then those of debris; and shapes, then those of bodies.
         """
         if not self.moves:
             return self

@@ -13,6 +13,7 @@ from ffsr_plan.core.checks import whole_number
 from ffsr_plan.core.contacts import CloudName, RoundName, ShapeName, ZoneName
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted
+from ffsr_plan.scene.shapes.obstacle_shapes import Ball, ObstacleShape
 
 _ROUND = ("cylinder", "ellipsoid")  # obstacles in which depths are not known
 
@@ -94,6 +95,22 @@ def source_title(sources: Sequence[tuple[str, int]], place: int) -> str:
             return own if isinstance(name, CloudName) else name
         begin += count
     return ""
+
+
+def with_spheres(shapes: Sequence[ObstacleShape], growth: float) -> dict[str, Any]:
+    """Shapes as arguments of a scene in which balls are spheres, to which distances are faster.
+
+    Args:
+        shapes: the shapes.
+        growth: distance by which they are grown [m].
+    """
+    balls = [shape for shape in shapes if isinstance(shape, Ball)]
+    return {
+        "centers": [ball.position for ball in balls],
+        "radii": [ball.radius + growth for ball in balls],
+        "shapes": [shape for shape in shapes if not isinstance(shape, Ball)],
+        "growth": growth,
+    }
 
 
 def extent_in_words(bounds: Array) -> str:
