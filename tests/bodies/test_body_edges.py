@@ -15,8 +15,9 @@ from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.body_edge import BodyEdge
 from ffsr_plan.proof.edge_travel import EdgeTravel
-from ffsr_plan.proof.interval_halving import ROUNDING, certify
+from ffsr_plan.proof.interval_halving import ROUNDING, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import NominalPlacements
+from ffsr_plan.proof.moving_obstacles import BodyProof
 
 STILL = np.zeros(3)
 SHAPES = [fp.Box((0.6, 1.6, 0.02)), fp.Capsule(0.1, 0.8, (0.3, 0.0, 0.2))]
@@ -115,6 +116,33 @@ def test_no_edge_that_a_moving_body_touches_is_proven_free(kind):
         counts += [free, not free, free and edge.speed > sum(ends)]
     assert counts[0] >= 2
     assert counts[1] >= 1
+
+
+@pytest.mark.parametrize("even", [True, False])
+@pytest.mark.parametrize("kind", ["drift", "spin", "tumble", "track"])
+def test_compiled_proofs_say_what_those_by_coal_say(kind, even):
+    robot, rng = fp.load_robot("planar_dual_arm"), np.random.default_rng(3)
+    counts = np.zeros(3, dtype=int)
+    for _ in range(12):
+        end = robot.configuration(rng.uniform(-0.5, 0.5, 3), joints={"left_1": 0.7})
+        motion = Motion(robot, "free-flying", robot.neutral(), end, np.stack([STILL, end[:3]]))
+        moving = body(rng, kind, rng.normal(size=3) * 1.2)
+        start = rng.uniform(0.0, 40.0)
+        edge = edge_past(moving, motion, Window((start, start + rng.uniform(0.5, 15.0)), even))
+        ends = edge.clearance(0.0), edge.clearance(1.0)
+        by_coal = certify(edge, ends, 1e-4)
+        proof = BodyProof(motion, fp.Scene(shapes=moving.shapes), EdgeTravel(motion), True)
+        found = proof.certify(edge, ends, 1e-4)
+        assert found.free == by_coal.free
+        assert found.least_clearance == pytest.approx(by_coal.least_clearance, abs=1e-7)
+        counts += [found.free, not found.free, found.free and found.queries > 0]
+        if found.free:
+            bound, least = proof.clearance_bound(edge, ends, min(ends), 0.05)
+            reference = clearance_bound(edge, ends, min(ends), 0.05)
+            assert least == pytest.approx(reference[1], abs=1e-7)
+            assert bound == pytest.approx(reference[0], abs=0.05 * least + 1e-7)
+            assert least * 0.95 - 1e-7 <= bound <= least
+    assert counts.all()
 
 
 @pytest.mark.parametrize("even", [True, False])
