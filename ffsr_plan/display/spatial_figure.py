@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from ffsr_plan.display.figure_style import Style
     from ffsr_plan.display.scenes.picture_data import MotionFrames
     from ffsr_plan.problem.problem import Problem
+    from ffsr_plan.scene.scene import Scene
     from ffsr_plan.scene.shapes.keep_in_zones import Zone
     from ffsr_plan.scene.shapes.obstacle_shapes import ObstacleShape
 
@@ -70,6 +71,14 @@ class _Faces(NamedTuple):
         light = (_DARKEST + (1.0 - _DARKEST) * lit)[:, None]
         self.polygons.extend(polygons)
         self.colours.extend(np.hstack([light * to_rgb(colour), np.full_like(light, alpha)]))
+
+    def add_at_rest(self, scene: Scene, solid: Flags, colour: str) -> None:
+        """Add the spheres and shapes of a scene that are `solid` (N + S,)."""
+        ball, count = _ball(10), len(scene.radii)
+        for each in np.flatnonzero(solid[:count]):
+            self.add(scene.centers[each] + scene.radii[each] * ball, colour, 1.0)
+        for each in np.flatnonzero(solid[count:]):
+            self.add(_shape(scene.shapes[each]), colour, 1.0)
 
     def add_bodies(self, tracks: Sequence[BodyTrack], rows: Sequence[int], colour: str) -> None:
         """Add bodies that move as they are in some frames, from light to dark."""
@@ -127,11 +136,7 @@ def spatial_figure(
     bodies, debris = body_tracks(problem.scene, times), debris_track(problem.scene, times)
     figure, ax3 = _axes_in_space(ax)
     faces, scene = _Faces([], []), problem.scene
-    ball, count, near = _ball(10), len(scene.radii), solid[: len(scene.radii)]
-    for center, radius in zip(scene.centers[near], scene.radii[near], strict=True):
-        faces.add(center + radius * ball, style.colour("obstacles"), 1.0)
-    for each in np.flatnonzero(solid[count:]):
-        faces.add(_shape(scene.shapes[each]), style.colour("obstacles"), 1.0)
+    faces.add_at_rest(scene, solid, style.colour("obstacles"))
     for row in rows:
         at_end = row in (rows[0], rows[-1])
         name = "robot" if not at_end else "start" if row == rows[0] else "goal"
@@ -146,7 +151,7 @@ def spatial_figure(
     _draw(ax3, faces)
     ax3.plot([], [], color=style.colour("path"), lw=2.0, label=style.label("path"))
     mark_ends(ax3, style)
-    if count + len(scene.shapes) <= NUMBERED:
+    if len(scene.radii) + len(scene.shapes) <= NUMBERED:
         for k, center in enumerate(scene.centers):
             x, y, z = center + np.array([0.0, 0.0, 1.25 * scene.radii[k]])
             ax3.text(x, y, z, str(k), ha="center", fontsize=8)

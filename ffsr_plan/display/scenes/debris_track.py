@@ -36,8 +36,7 @@ class DebrisTrack(NamedTuple):
 
     def centers(self, row: int) -> Array:
         """(k, 3) centres of all spheres in one frame, world [m]."""
-        time = float(self.times[row])
-        each = [cloud.centers_at(time) for cloud in self.clouds]
+        each = [cloud.centers_at(float(self.times[row])) for cloud in self.clouds]
         return np.concatenate([np.zeros((0, 3)), *each])
 
     def corners(self) -> Array:
