@@ -19,7 +19,7 @@ from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.body_edge import BodyEdge
 from ffsr_plan.proof.edge_travel import EdgeTravel
-from ffsr_plan.proof.interval_halving import Verdict, certify, clearance_bound
+from ffsr_plan.proof.interval_halving import Edge, Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import NominalPlacements, odd_times
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
@@ -173,6 +173,11 @@ class MovingObstacles:
             seen = in_axes(Placements(frames), poses, shift[None])
             pairs.append(query.nearest_at(seen, 0, np.zeros(3))._replace(obstacle=self._first + b))
         return min(pairs, key=lambda pair: pair.distance)
+
+    def edges_at(self, layer: int) -> list[Edge]:
+        """An edge without offsets past each body, for interval halving."""
+        still = np.zeros(3)
+        return [self._edge(b, layer, still, still) for b in range(len(self._bodies))]
 
     def _edge(self, b: int, layer: int, tail: Array, head: Array) -> BodyEdge:
         self._deadline.check()
