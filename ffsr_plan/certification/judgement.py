@@ -9,19 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ffsr_plan.certification.end_effector import checked_frame, drifts
+from ffsr_plan.certification.end_effector import checked_frame
 from ffsr_plan.certification.first_contact import first_contact
 from ffsr_plan.certification.given_times import GivenTimes
+from ffsr_plan.certification.sampled_trajectory import SAMPLES, configurations_at, samples_of
 from ffsr_plan.certification.spans import RobotTrajectory, Span
-from ffsr_plan.certification.trajectory_report import (
-    Samples,
-    TrajectoryContact,
-    TrajectoryReport,
-    configurations_at,
-)
+from ffsr_plan.certification.trajectory_report import TrajectoryContact, TrajectoryReport
 from ffsr_plan.collision.contacts import named
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery, SelfQuery
-from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import FARTHEST, finite_array, number
 from ffsr_plan.core.contacts import obstacle_name
 from ffsr_plan.core.errors import InvalidInput
@@ -38,7 +33,6 @@ from ffsr_plan.trajectory.flight import Flight
 from ffsr_plan.trajectory.trajectory import Trajectory
 
 _RESOLUTION = 1e-6  # [s] of the time of a contact
-_SAMPLES, _MOST_SAMPLES = 400, 4000  # of the turn of the base and the drift
 
 
 Given = Trajectory | PlanData | SmoothPlanData | Flight | str | Path
@@ -48,6 +42,7 @@ Given = Trajectory | PlanData | SmoothPlanData | Flight | str | Path
 class _Found(NamedTuple):
     """What was found on a span: least proven clearance [m], or times [s] and the nearest pair."""
 
+    queries: int
     clearance: float
     near: float | None
     contact: float | None
@@ -106,19 +101,21 @@ def certify(
     position = finite_array("base_position", base_position, (3,), FARTHEST)
     attitude = from_angles(finite_array("base_attitude", base_attitude, (3,)))
     run = RobotTrajectory(robot, mode, trajectory, position, attitude)
-    spans = list(run.spans())
-    least, near, contact, queries = np.inf, None, None, 0
+    spans, found = list(run.spans()), list[_Found]()
     for span in spans:
-        found, count = _proven(span, scene, allowed)
-        queries, least = queries + count, min(least, found.clearance)
-        near = found.near if near is None else near
-        if found.contact is not None and found.pair is not None:
-            contact = _contact(robot, scene, spans, found.contact, found.pair)
+        found.append(_proven(span, scene, allowed))
+        if found[-1].contact is not None:
             break
-    free = near is None and contact is None
+    times = [each.near for each in found if each.near is not None]
+    free, last = not times and found[-1].contact is None, found[-1]
+    contact = None
+    if last.contact is not None and last.pair is not None:
+        contact = _contact(robot, scene, spans, last.contact, last.pair)
     return TrajectoryReport(
-        robot, scene, trajectory, mode, free, float(least) if free else 0.0, contact,
-        near if contact is None else None, frame, _samples(robot, spans, frame), queries, spans,
+        robot, scene, trajectory, mode, free,
+        min(each.clearance for each in found) if free else 0.0, contact,
+        times[0] if times and contact is None else None, frame,
+        samples_of(robot, spans, frame), sum(each.queries for each in found), spans,
     )  # fmt: skip
 
 
@@ -134,8 +131,8 @@ def _given(trajectory: object) -> Trajectory:
     raise InvalidInput("trajectory", trajectory, allowed)
 
 
-def _proven(span: Span, scene: Scene, tolerance: float) -> tuple[_Found, int]:
-    """What is found on a span, and the number of queries that it took."""
+def _proven(span: Span, scene: Scene, tolerance: float) -> _Found:
+    """What is found on a span."""
     motion, still = span.motion, np.zeros((span.motion.edges + 1, 3))
     prover = Prover(motion, scene, tolerance, pace=GivenTimes.at(span.times))
     corners, edges = np.arange(motion.edges + 1), np.arange(motion.edges)
@@ -156,12 +153,13 @@ def _proven(span: Span, scene: Scene, tolerance: float) -> tuple[_Found, int]:
                 close = found.near if close is None else min(close, found.near)
         if until <= 1.0:
             pair = _pair(prover, edge, until)
-            return _Found(0.0, near, begin + until * length, pair), prover.queries
+            return _Found(prover.queries, 0.0, near, begin + until * length, pair)
         if close is not None and near is None:
             near = begin + close * length
     if near is not None:
-        return _Found(0.0, near, None, None), prover.queries
-    return _Found(prover.least_clearance(still, clearances), None, None, None), prover.queries
+        return _Found(prover.queries, 0.0, near, None, None)
+    least = prover.least_clearance(still, clearances)
+    return _Found(prover.queries, least, None, None, None)
 
 
 def _pair(prover: Prover, edge: int, time: float) -> Nearest:
@@ -176,7 +174,7 @@ def _contact(
 ) -> TrajectoryContact:
     """The contact at a time [s], and the deepest one from then on."""
     end = float(spans[-1].times[-1])
-    times = np.append(time, np.linspace(time, end, _SAMPLES))
+    times = np.append(time, np.linspace(time, end, SAMPLES))
     q = configurations_at(spans, times)
     links, fixed = SelfQuery(robot), ObstacleQuery(robot, scene) if not scene.bodies else None
     deepest, when = named(scene, pair), time
@@ -190,17 +188,3 @@ def _contact(
     turn = float(angle_between(first[3:7], q[0, 3:7]))
     name = obstacle_name(met.obstacle, met.source)
     return TrajectoryContact(time, met.link, met.obstacle, name, turn, when, deepest)
-
-
-def _samples(robot: SpaceRobot, spans: Sequence[Span], frame: str) -> Samples:
-    """The trajectory at all its times, and at as many between them as make the usual number."""
-    corners: Array = np.unique(np.concatenate([span.times for span in spans]))
-    parts = max(1, -(-_SAMPLES // (len(corners) - 1)))
-    places = np.arange(parts * (len(corners) - 1) + 1) / parts
-    times = np.interp(places, np.arange(len(corners)), corners)
-    if len(times) > _MOST_SAMPLES:
-        times = times[np.linspace(0, len(times) - 1, _MOST_SAMPLES).astype(np.int64)]
-    q = configurations_at(spans, times)
-    turns = np.asarray(angle_between(q[0, 3:7], q[:, 3:7]))
-    shifts = np.asarray(np.linalg.norm(q[:, :3] - q[0, :3], axis=1))
-    return Samples(times, q, turns, shifts, drifts(robot, frame, q))

@@ -10,9 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.certification.sampled_trajectory import (
+    Samples,
+    ShownTrajectory,
+    configurations_at,
+)
 from ffsr_plan.certification.spans import Span
-from ffsr_plan.core.arrays import Array, equal_by_content
-from ffsr_plan.core.checks import finite_array
+from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.checks import finite_array, text
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.contacts import TOUCHING, Contact, encounter
 from ffsr_plan.core.errors import InvalidInput
@@ -44,25 +49,6 @@ class TrajectoryContact(NamedTuple):
     turn: float
     deepest_time: float
     deepest: Contact
-
-
-@equal_by_content
-class Samples(NamedTuple):
-    """A trajectory at N times.
-
-    Attributes:
-        times: (N,) [s].
-        configurations: (N, nq), base reaction included.
-        turns: (N,) angle by which the base has turned since the start [rad].
-        shifts: (N,) distance of the base origin from its start [m].
-        drifts: (N,) distance of the end effector from where a base at rest would take it [m].
-    """
-
-    times: Array
-    configurations: Array
-    turns: Array
-    shifts: Array
-    drifts: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,18 +153,12 @@ class TrajectoryReport:
         Raises:
             InvalidInput: a file that cannot be written.
         """
+        target = checked_path("path", path, ".html")
+        heading = text("title", title) or f"{self.robot.name}, {self.mode}"
+        shown = ShownTrajectory(
+            heading, self.verdict(), self.scene, self.trajectory, self._spans, self.samples,
+            self.frame, self.proven_clearance,
+        )  # fmt: skip
         from ffsr_plan.certification.trajectory_page import trajectory_page
 
-        target = checked_path("path", path, ".html")
-        write_text("path", target, trajectory_page(self, title))
-
-
-def configurations_at(spans: Sequence[Span], times: Array) -> Array:
-    """(N, nq) configurations at times (N,) [s] within connected spans."""
-    begins = np.array([span.times[0] for span in spans])
-    which = np.maximum(np.searchsorted(begins, times, side="right") - 1, 0)
-    found = np.empty((len(times), spans[0].motion.robot.model.nq))
-    for k in np.unique(which).tolist():
-        rows = which == k
-        found[rows] = spans[k].at(times[rows])
-    return found
+        write_text("path", target, trajectory_page(shown))
