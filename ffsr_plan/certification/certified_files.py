@@ -12,7 +12,7 @@ from ffsr_plan.certification.bus_mass import on_bus
 from ffsr_plan.certification.judgement import certify
 from ffsr_plan.certification.trajectory_report import TrajectoryReport
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.formats.scene_files import read_scene
+from ffsr_plan.formats.scenes.scene_files import read_scene
 from ffsr_plan.formats.trajectory_files import read_trajectory
 from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.robots.robot import SpaceRobot

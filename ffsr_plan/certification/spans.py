@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
@@ -21,7 +20,7 @@ from ffsr_plan.dynamics.actuation_mode import Mode
 from ffsr_plan.dynamics.momentum import centers_of_mass
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.robots.robot import SpaceRobot
-from ffsr_plan.trajectory.trajectory import Trajectory
+from ffsr_plan.trajectory.trajectory import Trajectory, spline_rates
 
 _MOST_PIECES = 256  # of a span: the tables that a proof keeps grow with their number
 _SAME_ATTITUDE = 1e-14  # [rad] below which a base does not turn
@@ -174,7 +173,7 @@ def _bernstein(given: Trajectory, values: Array, rates: Array | None) -> Array:
         inner = values[:-1] + change, values[1:] - change
     else:
         if rates is None:
-            rates = CubicSpline(given.times, values, bc_type="clamped")(given.times, 1)
+            rates = spline_rates(given.times, values)
         inner = values[:-1] + steps * rates[:-1] / 3.0, values[1:] - steps * rates[1:] / 3.0
     return np.stack([values[:-1], *inner, values[1:]], axis=1)
 

@@ -143,6 +143,25 @@ class TrajectoryReport:
             raise InvalidInput("times", times, f"times from {begin:g} to {end:g} s")
         return configurations_at(self._spans, asked)
 
+    def with_base(self) -> Trajectory:
+        """The trajectory with the base poses at its times, for formats that hold them.
+
+        Joints, velocities and interpolation are those that were given. A trajectory that is read
+        from such a file starts where this one does; its attitudes are given at the times alone.
+        """
+        given = self.trajectory
+        q = self.at(given.times)
+        return Trajectory(
+            given.times,
+            given.joints,
+            velocities=given.velocities,
+            base_positions=q[:, :3],
+            base_velocities=None if self.mode.floats else given.base_velocities,
+            base_attitudes=q[:, 3:7],
+            interpolation=given.interpolation,
+            source=given.source,
+        )
+
     def write_html(self, path: str | Path, title: str = "") -> None:
         """Write a page that plays the trajectory in true time, and needs no network.
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
 
 from ffsr_plan.core.arrays import Array, ReadOnlyDict, content, frozen
 from ffsr_plan.core.checks import (
@@ -230,6 +231,12 @@ def checked_times(what: str, times: ArrayLike) -> Array:
         allowed = f"times that increase: more than {checked[row - 1]:.9g} s"
         raise InvalidInput(f"{what}, row {row}", float(checked[row]), allowed)
     return checked
+
+
+def spline_rates(times: Array, values: Array) -> Array:
+    """Rates (N, k) of the cubic spline through values (N, k) at times (N,), at rest at its ends."""
+    rates: Array = CubicSpline(times, values, bc_type="clamped")(times, 1)
+    return rates
 
 
 def _columns(what: str, values: object, names: object) -> dict[str, Array]:

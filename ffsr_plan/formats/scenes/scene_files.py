@@ -7,6 +7,8 @@ from pathlib import Path
 
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.checks import unknown_name
+from ffsr_plan.formats.scenes.moveit_scenes import read_moveit_scene
+from ffsr_plan.formats.scenes.primitive_scenes import read_primitives
 from ffsr_plan.scenario_files.scene_file import load_scene
 from ffsr_plan.scene.scene import Scene
 
@@ -16,6 +18,10 @@ _READERS: dict[str, Callable[[str | Path], Scene]] = {
     ".npy": Scene.from_numpy,
     ".npz": Scene.from_numpy,
     ".urdf": Scene.from_urdf,
+    ".scene": read_moveit_scene,
+    ".yaml": read_primitives,
+    ".yml": read_primitives,
+    ".json": read_primitives,
 }
 
 
