@@ -101,18 +101,22 @@ def certify(
     position = finite_array("base_position", base_position, (3,), FARTHEST)
     attitude = from_angles(finite_array("base_attitude", base_attitude, (3,)))
     run = RobotTrajectory(robot, mode, trajectory, position, attitude)
-    spans, found = list(run.spans()), list[_Found]()
+    return _judged(run, scene, frame, allowed)
+
+
+def _judged(run: RobotTrajectory, scene: Scene, frame: str, tolerance: float) -> TrajectoryReport:
+    """The report on a trajectory of a robot."""
+    robot, spans, found = run.robot, list(run.spans()), list[_Found]()
     for span in spans:
-        found.append(_proven(span, scene, allowed))
+        found.append(_proven(span, scene, tolerance))
         if found[-1].contact is not None:
             break
     times = [each.near for each in found if each.near is not None]
-    free, last = not times and found[-1].contact is None, found[-1]
-    contact = None
+    free, last, contact = not times and found[-1].contact is None, found[-1], None
     if last.contact is not None and last.pair is not None:
         contact = _contact(robot, scene, spans, last.contact, last.pair)
     return TrajectoryReport(
-        robot, scene, trajectory, mode, free,
+        robot, scene, run.trajectory, run.mode, free,
         min(each.clearance for each in found) if free else 0.0, contact,
         times[0] if times and contact is None else None, frame,
         samples_of(robot, spans, frame), sum(each.queries for each in found), spans,

@@ -188,6 +188,18 @@ base held and, the same plans, with the base free on buses of seven masses.
 
 - With the base held {sum(h.free for h in held)} of {len(held)} plans are proven free; the least
   clearance of a plan is {min(clearances):.1f} mm, the median {np.median(clearances):.1f} mm.
+- The scene is that of the public repository free-floating-manipulation, whose README has the
+  published columns: 40 other plans by MoveIt for each mass. Arm masses are the same identified
+  parameters, within 0.2 kg. 17.3 mm, which the README calls modal, is the clearance at the goal.
+- Judged here is the whole motion between the corners of a plan, there its waypoints; so more is
+  found here. What the reaction takes of the clearance agrees within 1 mm.
+- With the base held, four plans touch the target by up to 1.7 mm between the states that OMPL
+  looks at, 0.5 % of the extent of the joint space apart. They are among those that collide.
+- On buses of up to 300 kg the goal's joint values leave less than 2 mm, or collide, at the
+  attitude that the straight way leads to. Our plans are asked to bring the base back to its
+  attitude there, by the arms alone. "Verified" is the independent check of the first five.
+- The servicer's body turns with the base here. There it is an obstacle at rest, which no plan
+  comes near. Which of OMPL's planners MoveIt takes there is not said.
 """
 
 
