@@ -1,6 +1,7 @@
 """The first contact on an edge of a motion, by interval halving from its begin on.
 
-Whatever lies before the contact is proven free, so that no earlier one can hide between samples.
+Whatever lies before the contact is proven free, but where distances are below the tolerance, as
+they are just before it. So no earlier contact deeper than that can hide between samples.
 """
 
 from __future__ import annotations

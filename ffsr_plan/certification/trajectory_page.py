@@ -53,7 +53,9 @@ def trajectory_page(shown: ShownTrajectory) -> str:
     check_memory("page", size, BYTES_PER_POSE, "a trajectory that turns joints less often")
     frames = motion_frames(robot, configurations_at(shown.spans, times))
     q = frames.configurations
-    problem = _Problem(robot, scene, scene, q[-1, :3] - q[0, :3])
+    floats = shown.spans[0].motion.mode.floats  # then the base's small way is no direction to view
+    way = np.zeros(3) if floats else q[-1, :3] - q[0, :3]
+    problem = _Problem(robot, scene, scene, way)
     return motion_page(
         PlayedMotion(
             problem=problem,

@@ -30,7 +30,7 @@ from ffsr_plan.trajectory.trajectory import Trajectory
 
 
 class TrajectoryContact(NamedTuple):
-    """The first contact of a trajectory; nothing touches earlier, but for the resolution.
+    """The first contact of a trajectory: earlier all is proven free, but below the tolerance.
 
     Attributes:
         time: at which something touches, at most 1e-6 s after it began to [s].

@@ -89,7 +89,7 @@ class Trajectory:
         put(self, "source", name)
         put(self, "times", checked_times(f"{name}, times", times))
         put(self, "joints", self._by_joint("joints", joints))
-        rates = self._by_joint("velocities", velocities or {})
+        rates = self._by_joint("velocities", {} if velocities is None else velocities)
         if rates and set(rates) != set(self.joints):
             given, allowed = sorted(rates), f"those of all joints: {', '.join(self.joints)}"
             raise InvalidInput(f"{name}, velocities", given, allowed)
@@ -241,7 +241,8 @@ def spline_rates(times: Array, values: Array) -> Array:
 
 def _columns(what: str, values: object, names: object) -> dict[str, Array]:
     """Columns of an array (N, n) by n names."""
-    listed = list(names) if isinstance(names, (list, tuple, np.ndarray)) else []
+    listed = np.asarray(names).tolist() if isinstance(names, np.ndarray) else names
+    listed = list(listed) if isinstance(listed, (list, tuple)) else []
     if not listed or not all(isinstance(name, str) for name in listed):
         raise InvalidInput("names", names, "a list of joint names")
     if len(set(listed)) < len(listed):

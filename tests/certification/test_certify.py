@@ -7,6 +7,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 import ffsr_plan as fp
 from ffsr_plan.certification import spans as spans_module
 from ffsr_plan.core.rotations import angle_between, exp, multiply
+from ffsr_plan.robots.loading import robot_from_urdf
 
 BESIDE = fp.Scene([[-0.35, 1.1, 0.0]], [0.2])
 
@@ -196,3 +197,21 @@ def test_errors_name_field_value_and_what_is_allowed(robot, change, field, allow
         fp.certify(robot, fp.Scene(), fp.Trajectory(times, joints))
     assert field in error.value.what
     assert allowed in str(error.value)
+
+
+def test_continuous_joints_take_the_shorter_way():
+    limit = '<limit effort="1" velocity="1"/>'
+    parts = "".join(
+        f'<link name="{name}"><inertial><mass value="2"/>'
+        '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+        '<collision><geometry><sphere radius="0.1"/></geometry></collision></link>'
+        for name in ("base", "arm")
+    )
+    joint = '<parent link="base"/><child link="arm"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>'
+    urdf = (
+        f'<robot name="r">{parts}<joint name="j" type="continuous">{joint}{limit}</joint></robot>'
+    )
+    robot = robot_from_urdf(urdf, "r")
+    given = fp.Trajectory([0.0, 1.0], {"j": [3.1, -3.1]})
+    (middle,) = robot.joint_values(fp.certify(robot, fp.Scene(), given).at([0.5]))
+    assert abs(abs(middle[0]) - np.pi) < 1e-9

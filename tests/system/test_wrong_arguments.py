@@ -55,7 +55,7 @@ def calls(plan, tmp_path_factory):
 
     motion = fp.formats.trajectory_of(plan)
     judged = fp.certify(robot, scene, motion)
-    fp.formats.write_csv(folder / "t.csv", motion)
+    fp.formats.write_csv(folder / "motion.csv", motion)
     motion_fields = {name: getattr(motion, name) for name in fp.Trajectory.__annotations__}
 
     def show_and_go_on(**given):
@@ -150,7 +150,7 @@ def calls(plan, tmp_path_factory):
         fp.on_bus: {"robot": robot, "mass": 5.0, "inertia": None, "center_of_mass": [0, 0, 0]},
         fp.formats.trajectory_of: {"source": plan, "duration": 3.0, "rate": 5.0},
         fp.formats.messages_of: {"trajectory": motion, "frame_id": "w", "base_joint": "b"},
-        fp.formats.read_trajectory: {"path": folder / "t.csv", "interpolation": "cubic"},
+        fp.formats.read_trajectory: {"path": folder / "motion.csv", "interpolation": "cubic"},
         fp.formats.write_trajectory: {"path": folder / "t.json", "trajectory": motion},
         fp.formats.write_aem: {"path": folder / "t.aem", "trajectory": motion, "frames": None},
         fp.formats.write_oem: {"path": folder / "t.oem", "trajectory": motion, "frames": None},
