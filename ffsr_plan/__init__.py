@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ffsr_plan import errors
+    from ffsr_plan import errors, formats
     from ffsr_plan.bodies.body_motion import Drift, Poses, Spin
     from ffsr_plan.bodies.debris.debris_cloud import DebrisCloud
     from ffsr_plan.bodies.moving_body import MovingBody
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from ffsr_plan.bodies.pose_function import PoseFunction
     from ffsr_plan.bodies.track import Track
     from ffsr_plan.bodies.tumble import Tumble
+    from ffsr_plan.certification.bus_mass import on_bus
+    from ffsr_plan.certification.judgement import certify
+    from ffsr_plan.certification.trajectory_report import TrajectoryContact, TrajectoryReport
     from ffsr_plan.collision.clearance import Clearance, clearance
     from ffsr_plan.collision.self_collisions import SelfCollision, SelfCollisions, self_collisions
     from ffsr_plan.core.contacts import Contact
@@ -106,6 +109,7 @@ if TYPE_CHECKING:
         Trails,
         TreeCycle,
     )
+    from ffsr_plan.trajectory.trajectory import Trajectory
     from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.flights.verify_flight import FlightReport
     from ffsr_plan.verification.verify import Report
@@ -198,6 +202,9 @@ __all__ = [
     "TimedPlan",
     "Track",
     "Trails",
+    "Trajectory",
+    "TrajectoryContact",
+    "TrajectoryReport",
     "TreeCycle",
     "TreePlanner",
     "Tumble",
@@ -209,16 +216,19 @@ __all__ = [
     "WideTurns",
     "WorkerDied",
     "arm_names",
+    "certify",
     "certify_edge",
     "clearance",
     "compose",
     "errors",
+    "formats",
     "generators",
     "inverse_kinematics",
     "load_robot",
     "load_scenario",
     "mesh_hulls",
     "momentum",
+    "on_bus",
     "plan",
     "refine",
     "robot_names",
@@ -235,6 +245,9 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "bodies.pose_function": ("PoseFunction",),
     "bodies.track": ("Track",),
     "bodies.tumble": ("Tumble",),
+    "certification.bus_mass": ("on_bus",),
+    "certification.judgement": ("certify",),
+    "certification.trajectory_report": ("TrajectoryContact", "TrajectoryReport"),
     "collision.clearance": ("Clearance", "clearance"),
     "collision.self_collisions": ("SelfCollision", "SelfCollisions", "self_collisions"),
     "core.contacts": ("Contact",),
@@ -313,6 +326,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "Trails",
         "TreeCycle",
     ),
+    "trajectory.trajectory": ("Trajectory",),
     "tree_search.tree_planner": ("TreePlanner",),
     "verification.flights.verify_flight": ("FlightReport",),
     "verification.verify": ("Report",),
@@ -320,6 +334,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
 _HOME = {name: module for module, names in _NAMES.items() for name in names}
 _MODULES = {
     "errors": "errors",
+    "formats": "formats",
     "generators": "scene.generators",
     "momentum": "dynamics.momentum",
 }

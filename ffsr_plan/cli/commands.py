@@ -1,4 +1,4 @@
-"""Commands `ffsr-plan demo | plan | verify | view | export | gif | timed | robots | ...`.
+"""Commands `ffsr-plan demo | plan | verify | certify | view | export | gif | timed | ...`.
 
 What a command needs is loaded when it runs: `--help` needs none of it.
 
@@ -289,6 +289,61 @@ def view(
         shown = Plan.load(plan_file).show(port, block=False, open_browser=browser)
         signal.signal(signal.SIGINT, signal.default_int_handler)
         shown.wait(f"{shown.url} shows the plan until Ctrl-C")
+
+
+@app.command()
+def certify(
+    trajectory: Annotated[str, typer.Argument(help="A table or message of joints over time.")],
+    urdf: Annotated[str, typer.Option(help="The robot: a .urdf file, or a bundled name.")],
+    scene: Annotated[str | None, typer.Option(help="The obstacles, or a scenario.")] = None,
+    mode: Annotated[
+        list[str] | None,
+        typer.Option(help="free-floating, free-flying or attitude-held; also several times."),
+    ] = None,
+    base_mass: Annotated[
+        float | None, typer.Option(help="kg of a bus that the root link is fixed to.")
+    ] = None,
+    base_inertia: Annotated[
+        str | None, typer.Option(help="Its moments in kg m^2, as 50,50,50; by default kg / 4.")
+    ] = None,
+    srdf: Annotated[str | None, typer.Option(help="Pairs of links that may touch.")] = None,
+    package_dir: Annotated[list[str] | None, typer.Option(help="ROS packages of meshes.")] = None,
+    lock: Annotated[list[str] | None, typer.Option(help="A fixed joint, finger=0.04.")] = None,
+    visual: Annotated[bool, typer.Option(help="Take visual shapes where others lack.")] = False,
+    balance: Annotated[bool, typer.Option(help="Mend inertias that no body has.")] = False,
+    interpolation: Annotated[str | None, typer.Option(help="linear or cubic.")] = None,
+    frame: Annotated[str | None, typer.Option(help="The end effector.")] = None,
+    tolerance: Annotated[float, typer.Option(help="Clearance in m that is not proven.")] = 1e-4,
+    page: PageFile = None,
+    force: Force = False,
+    quiet: Quiet = False,
+    as_json: Json = False,
+) -> None:
+    """Judge any trajectory: proven free when the base reacts, or the first contact."""
+    with errors_on_stderr():
+        from ffsr_plan.certification import certified_files
+        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.printed_tables import side_by_side
+        from ffsr_plan.cli.result_files import check_replacement
+
+        output = Output(quiet, as_json)
+        if page is not None:
+            check_replacement("--page", page, force)
+        dirs, locked = package_dir or (), lock or ()
+        robot = certified_files.RobotFile(
+            urdf, srdf, dirs, locked, base_mass, base_inertia, visual, balance
+        )
+        options = {"interpolation": interpolation, "frame": frame, "tolerance": tolerance}
+        modes = mode or ["free-floating"]
+        reports = certified_files.certify_files(trajectory, robot, scene, modes, **options)  # type: ignore[arg-type]
+        if page is not None:
+            reports[0].write_html(page)
+        output.show(
+            lambda: [side_by_side(modes, [certified_files.report_rows(r) for r in reports])],
+            lambda: {"reports": [certified_files.report_figures(r) for r in reports]},
+        )
+        if not all(report.free for report in reports):
+            raise typer.Exit(1)
 
 
 @app.command()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,6 +47,22 @@ def times_table(times: StepTimes) -> Table:
 def flight_table(flight: FlightFigures, report: FlightReport) -> Table:
     """A timed plan: duration, delta-v, peak loads, and its verification."""
     return _two_columns([*flight_rows(flight), *flight_report_rows(report)])
+
+
+def side_by_side(titles: Sequence[str], columns: Sequence[Sequence[tuple[str, str]]]) -> Table:
+    """Names and values of things of one kind, a column each; a name that one lacks is a blank.
+
+    Args:
+        titles: of the columns.
+        columns: names and values of each.
+    """
+    table = Table("")
+    for title in titles:
+        table.add_column(Text(title))  # not markup: titles may hold brackets
+    names = dict.fromkeys(name for column in columns for name, _ in column)
+    for name in names:
+        table.add_row(name, *(dict(column).get(name, "") for column in columns))
+    return table
 
 
 def robot_table(robots: Iterable[RobotSummary]) -> Table:

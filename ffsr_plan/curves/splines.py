@@ -45,8 +45,18 @@ def pieces_with(control: Array, turn: Array) -> Pieces:
         control: (m + 1, D) control points, columns as in `Pieces`.
         turn: (3,) rotation by wheels from start to goal, base axes [rad].
     """
-    rows = np.zeros((len(control) - 1, ROWS, control.shape[1]))
-    rows[:, VALUES:RATES] = values = bernstein_pieces(control)
+    return pieces_of(bernstein_pieces(control), turn)
+
+
+def pieces_of(values: Array, turn: Array) -> Pieces:
+    """The pieces with given coefficients.
+
+    Args:
+        values: (m, 4, D) Bernstein coefficients, columns as in `Pieces`.
+        turn: (3,) rotation by wheels from start to goal, base axes [rad].
+    """
+    rows = np.zeros((len(values), ROWS, values.shape[2]))
+    rows[:, VALUES:RATES] = values
     rows[:, RATES:BENDS] = rates = derivative(values)
     rows[:, BENDS:TURN] = derivative(rates)
     rows[:, TURN, :3] = turn

@@ -31,12 +31,12 @@ from ffsr_plan.display.scenes.scene_objects import (
     set_up,
 )
 from ffsr_plan.display.scenes.shape_outlines import labels
+from ffsr_plan.display.scenes.shown_problem import ShownProblem
 from ffsr_plan.display.scenes.shown_space import shown_space
 from ffsr_plan.display.scenes.timed_clearances import nearest_passes
 from ffsr_plan.display.scenes.zone_outlines import name_places
 from ffsr_plan.display.web.html_template import html_page
 from ffsr_plan.plans.plan_data import PlanData
-from ffsr_plan.problem.problem import Problem
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.records import Trails
 
@@ -98,7 +98,7 @@ class PlayedMotion(NamedTuple):
         times: (N,) of the frames [s], needed where bodies move.
     """
 
-    problem: Problem
+    problem: ShownProblem
     frames: MotionFrames
     axis: Axis
     charts: Sequence[Quantity]
@@ -172,7 +172,9 @@ def _chart(chart: Quantity, bound: str) -> dict[str, Any]:
     return {**named, "curves": curves, "limits": chart.limits, "bound": bound}
 
 
-def _body(problem: Problem, frames: MotionFrames, centers: Array, radii: Array) -> dict[str, Any]:
+def _body(
+    problem: ShownProblem, frames: MotionFrames, centers: Array, radii: Array
+) -> dict[str, Any]:
     """Heading and upper side of the base in its own axes, and the reach of the robot [m].
 
     The heading is the axis of the base that points most along the path at the start, the upper side
@@ -240,7 +242,7 @@ def _name(text: str, at: Array) -> dict[str, Any]:
 
 
 def _add_tracks(
-    viewer: MeshcatNode, problem: Problem, frames: MotionFrames, plan: PlanData | None
+    viewer: MeshcatNode, problem: ShownProblem, frames: MotionFrames, plan: PlanData | None
 ) -> None:
     """Ribbons in the plane of the path: ants' trails by pheromone, base origin, arm tips."""
     up = view_axes(problem)[2]

@@ -22,7 +22,7 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.body_edge import BodyEdge, DebrisProof, Passages
 from ffsr_plan.proof.course import course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
-from ffsr_plan.proof.interval_halving import Verdict, certify, clearance_bound
+from ffsr_plan.proof.interval_halving import Edge, Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import NominalPlacements, odd_times
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.time_limit.deadline import Deadline
@@ -286,6 +286,11 @@ class MovingObstacles:
             measure = self._debris.distances.nearest_at
             pairs.append(measure(Placements(frames), 0, shift, float(instant[0])))
         return min(pairs, key=lambda pair: pair.distance)
+
+    def edges_at(self, layer: int) -> list[Edge]:
+        """An edge without offsets past each body, for interval halving."""
+        still = np.zeros(3)
+        return [self._edge(b, layer, still, still) for b in range(len(self._bodies))]
 
     def _edge(self, b: int, layer: int, tail: Array, head: Array) -> BodyEdge:
         self._deadline.check()

@@ -23,7 +23,7 @@ from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.course import course_of
 from ffsr_plan.proof.edge_travel import EdgeTravel
-from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify, clearance_bound
+from ffsr_plan.proof.interval_halving import ROUNDING, Edge, Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import (
     NominalPlacements,
     ObstacleEdge,
@@ -185,6 +185,12 @@ class Prover:
             self.base_step(layer, tail, head),
             self._rounding,
         )
+
+    def edges_at(self, layer: int) -> list[Edge]:
+        """An edge without offsets past the obstacles at rest, past each body, and of the links."""
+        still = np.zeros(3)
+        found: list[Edge] = [self.obstacle_edge(layer, still, still), *self.links.edges(layer)]
+        return found + (self._moving.edges_at(layer) if self._moving is not None else [])
 
     def certify(self, layer: int, tail: Array, head: Array, ends: tuple[float, float]) -> Verdict:
         """Prove that an edge is free of obstacles, or refuse it.

@@ -10,7 +10,7 @@ from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.course import course_in_base
 from ffsr_plan.proof.edge_travel import EdgeTravel
-from ffsr_plan.proof.interval_halving import ROUNDING, Verdict, certify
+from ffsr_plan.proof.interval_halving import ROUNDING, Edge, Verdict, certify
 from ffsr_plan.proof.motion_edges import SelfCollisionEdge, joint_configuration
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -48,6 +48,13 @@ class LinkProof:
     def nearest(self, layer: int, time: float) -> Nearest:
         """The nearest two links that must not touch, at a time in [0, 1] on an edge."""
         return self._query.nearest(joint_configuration(self._motion, layer, time))
+
+    def edges(self, layer: int) -> list[Edge]:
+        """An edge of all pairs of links that must not touch, for interval halving; none without."""
+        if self._query.empty:
+            return []
+        pairs, rounding = np.arange(len(self._query.pairs)), ROUNDING + ITERATION_ERROR
+        return [SelfCollisionEdge(self._query, self._motion, self._travel, layer, pairs, rounding)]
 
     def verdicts(self) -> list[Verdict]:
         """(m,) for each edge, whether links that must not touch are proven apart.

@@ -53,6 +53,11 @@ def calls(plan, tmp_path_factory):
     plan.save(folder / "plan.json")
     np.save(folder / "s.npy", [[0.0, 0.0, 0.0, 1.0]])
 
+    motion = fp.formats.trajectory_of(plan)
+    judged = fp.certify(robot, scene, motion)
+    fp.formats.write_csv(folder / "motion.csv", motion)
+    motion_fields = {name: getattr(motion, name) for name in fp.Trajectory.__annotations__}
+
     def show_and_go_on(**given):
         return plan.show(**given, block=False)
 
@@ -137,6 +142,28 @@ def calls(plan, tmp_path_factory):
         fp.self_collisions(robot, q).write_srdf: {"path": folder / "s.srdf"},
         fp.certify_edge: {"robot": robot, "scene": scene, "start": q, "goal": problem.goal,
                           "mode": "free-flying", "tolerance": 1e-3},
+        fp.certify: {"robot": robot, "scene": scene, "trajectory": motion, "mode": "free-flying",
+                     "base_position": [0, 0, 0], "base_attitude": [0, 0, 0], "frame": None,
+                     "tolerance": 1e-4},
+        fp.Trajectory: motion_fields,
+        fp.Trajectory.of_array: {"times": [0, 1], "values": [[0.0], [1.0]], "names": ["a"],
+                                 "velocities": None},
+        judged.at: {"times": [0.5]},
+        judged.write_html: {"path": folder / "j.html", "title": "t"},
+        fp.on_bus: {"robot": robot, "mass": 5.0, "inertia": None, "center_of_mass": [0, 0, 0]},
+        fp.formats.trajectory_of: {"source": plan, "duration": 3.0, "rate": 5.0},
+        fp.formats.messages_of: {"trajectory": motion, "frame_id": "w", "base_joint": "b"},
+        fp.formats.read_trajectory: {"path": folder / "motion.csv", "interpolation": "cubic"},
+        fp.formats.write_trajectory: {"path": folder / "t.json", "trajectory": motion},
+        fp.formats.write_aem: {"path": folder / "t.aem", "trajectory": motion, "frames": None},
+        fp.formats.write_oem: {"path": folder / "t.oem", "trajectory": motion, "frames": None},
+        fp.formats.read_aem: {"path": folder / "t.aem"},
+        fp.formats.read_scene: {"path": folder / "s.csv"},
+        fp.formats.write_moveit_scene: {"path": folder / "s.scene", "scene": scene},
+        fp.formats.write_primitives: {"path": folder / "s.json", "scene": scene},
+        fp.formats.read_primitives: {"path": folder / "s.json", "problem": 0},
+        fp.formats.write_mjcf: {"path": folder / "m.xml", "robot": robot, "scene": scene,
+                                "trajectory": motion},
         fp.inverse_kinematics: {"robot": robot, "scene": None, "frame": "left_3",
                                 "position": [0.4, 0.5, 0.0], "attitude": None, "start": q,
                                 "mode": "attitude-held", "base_position": None,
@@ -227,11 +254,12 @@ def test_the_interface_is_covered(calls):
         "UncheckedLinks", "RobotSummary", "Scenario",
         "SearchResult", "SmoothCurve", "SmoothFlight", "SmoothPlan", "Solution", "SpaceRobot",
         "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum", "Pace", "Poses",
+        "TrajectoryContact", "TrajectoryReport",
     }  # fmt: skip
     without_arguments = {"arm_names", "robot_names", "robot_summaries", "warm_up"}  # or callbacks
     errors = {name for name in fp.__all__ if isinstance(getattr(fp, name), type)
               and issubclass(getattr(fp, name), Exception)}  # fmt: skip
     covered = {function.__name__ for function in calls}
-    modules = {"errors", "generators", "momentum"}
+    modules = {"errors", "formats", "generators", "momentum"}
     missing = set(fp.__all__) - covered - made_by_the_package - without_arguments - errors - modules
     assert not missing

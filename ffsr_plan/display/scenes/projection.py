@@ -11,8 +11,8 @@ import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.display.scenes.picture_data import MotionFrames
+from ffsr_plan.display.scenes.shown_problem import ShownProblem
 from ffsr_plan.lattice.layered_lattice import path_frame
-from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 
 STILL = 1e-9  # distance [m] of start and goal below which the base stays on the spot
@@ -38,7 +38,7 @@ class Outline(NamedTuple):
     colour: tuple[float, float, float]
 
 
-def view_axes(problem: Problem) -> Array:
+def view_axes(problem: ShownProblem) -> Array:
     """Directions of the picture in world axes.
 
     Args:

@@ -23,9 +23,9 @@ from ffsr_plan.display.scenes.meshcat_objects import (
 )
 from ffsr_plan.display.scenes.projection import view_axes, visible_shapes
 from ffsr_plan.display.scenes.shape_outlines import ROUND, joined, mesh_of
+from ffsr_plan.display.scenes.shown_problem import ShownProblem
 from ffsr_plan.display.scenes.shown_space import farthest_shown, shown_space
 from ffsr_plan.display.scenes.zone_outlines import dashed, lines_of, sides_of
-from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 
@@ -41,7 +41,7 @@ _GLOW = np.array([(0.14, 0.10, 0.29), (0.42, 0.12, 0.43), (0.86, 0.32, 0.26), (0
 
 def set_up(
     viewer: MeshcatNode,
-    problem: Problem,
+    problem: ShownProblem,
     centers: Array,
     radii: Array,
     tracks: Sequence[BodyTrack],

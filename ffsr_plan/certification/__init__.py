@@ -1,0 +1,1 @@
+"""Trajectories from anywhere judged: proven free, or the first contact and its cause."""
