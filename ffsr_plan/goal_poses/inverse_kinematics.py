@@ -72,19 +72,12 @@ def inverse_kinematics(
             joint values found.
 
     Warns:
-        NearDynamicSingularity: free-floating, and the frame can hardly move in some direction from
-            there: the least singular value of its generalized Jacobian is below 1e-3.
+        NearDynamicSingularity: free-floating, where `fp.least_singular_value` is below 1e-3.
     """
     target = pose_target(
-        robot,
-        frame,
-        position,
-        attitude,
-        start=start,
-        mode=Mode.parse("mode", mode),
-        base_position=base_position,
-        base_attitude=base_attitude,
-    )
+        robot, frame, position, attitude, start=start, mode=Mode.parse("mode", mode),
+        base_position=base_position, base_attitude=base_attitude,
+    )  # fmt: skip
     rng = np.random.default_rng(whole_number("seed", seed, at_least=0))
     with _causes(target):
         found = PoseSearch(frame, target, scene, rng).first()
