@@ -35,6 +35,7 @@ if TYPE_CHECKING:
         IntegrationError,
         InternalError,
         InvalidInput,
+        NearDynamicSingularity,
         NoPath,
         OutOfTime,
         PathNotFound,
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from ffsr_plan.display.web.page_server import PageServer
     from ffsr_plan.dynamics import momentum
     from ffsr_plan.dynamics.actuation_mode import Mode
+    from ffsr_plan.dynamics.dynamic_singularity import SlowestPlace, least_singular_value
     from ffsr_plan.dynamics.inverse_dynamics import States
     from ffsr_plan.dynamics.motion import Motion
     from ffsr_plan.dynamics.wheel_momentum import WheelMomentum
@@ -79,6 +81,8 @@ if TYPE_CHECKING:
     from ffsr_plan.problem.problem import Problem
     from ffsr_plan.proof.interval_halving import Verdict
     from ffsr_plan.proof.single_edge_proof import EdgeProof, certify_edge
+    from ffsr_plan.published_numbers.literature import literature
+    from ffsr_plan.published_numbers.recomputed_number import RecomputedNumber
     from ffsr_plan.robots.collision_shapes import Replacement
     from ffsr_plan.robots.kinematics import Components
     from ffsr_plan.robots.loading import load_robot, robot_names
@@ -163,6 +167,7 @@ __all__ = [
     "Motion",
     "Mount",
     "MovingBody",
+    "NearDynamicSingularity",
     "NoPath",
     "OutOfTime",
     "Pace",
@@ -182,6 +187,7 @@ __all__ = [
     "Problem",
     "Progress",
     "RateLimits",
+    "RecomputedNumber",
     "Replacement",
     "Report",
     "Roadmap",
@@ -191,6 +197,7 @@ __all__ = [
     "SearchResult",
     "SelfCollision",
     "SelfCollisions",
+    "SlowestPlace",
     "SmoothCurve",
     "SmoothFlight",
     "SmoothPlan",
@@ -224,6 +231,8 @@ __all__ = [
     "formats",
     "generators",
     "inverse_kinematics",
+    "least_singular_value",
+    "literature",
     "load_robot",
     "load_scenario",
     "mesh_hulls",
@@ -259,6 +268,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "IntegrationError",
         "InternalError",
         "InvalidInput",
+        "NearDynamicSingularity",
         "NoPath",
         "OutOfTime",
         "PathNotFound",
@@ -276,6 +286,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "display.live.live_view": ("LiveView",),
     "display.web.page_server": ("PageServer",),
     "dynamics.actuation_mode": ("Mode",),
+    "dynamics.dynamic_singularity": ("SlowestPlace", "least_singular_value"),
     "dynamics.inverse_dynamics": ("States",),
     "dynamics.motion": ("Motion",),
     "dynamics.wheel_momentum": ("WheelMomentum",),
@@ -297,6 +308,8 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "problem.problem": ("Problem",),
     "proof.interval_halving": ("Verdict",),
     "proof.single_edge_proof": ("EdgeProof", "certify_edge"),
+    "published_numbers.literature": ("literature",),
+    "published_numbers.recomputed_number": ("RecomputedNumber",),
     "robots.collision_shapes": ("Replacement",),
     "robots.kinematics": ("Components",),
     "robots.loading": ("load_robot", "robot_names"),

@@ -1,4 +1,4 @@
-"""Tables that commands print: plans, verification reports, timed plans and robots."""
+"""Tables that commands print: plans, reports, timed plans, robots, numbers from publications."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ffsr_plan.cli.flight_figures import FlightFigures
     from ffsr_plan.cli.step_times import StepTimes
     from ffsr_plan.plans.plan_data import PlanData
+    from ffsr_plan.published_numbers.recomputed_number import RecomputedNumber
     from ffsr_plan.robots.summary import RobotSummary
     from ffsr_plan.verification.flights.verify_flight import FlightReport
     from ffsr_plan.verification.verify import Report
@@ -77,6 +78,35 @@ def robot_table(robots: Iterable[RobotSummary]) -> Table:
             "\n".join(robot.joint_names),
         )
     return table
+
+
+def literature_table(numbers: Iterable[RecomputedNumber]) -> Table:
+    """Numbers from publications beside those computed here."""
+    right = {"justify": "right"}
+    table = Table("number", title="Numbers from the literature", title_justify="left")
+    for heading in ("expected", "computed", "tolerance"):
+        table.add_column(heading, **right)  # type: ignore[arg-type]
+    table.add_column("agrees")
+    for each in numbers:
+        quantity = f"{each.quantity} [{each.unit}]" if each.unit else each.quantity
+        table.add_row(
+            Text(quantity),
+            f"{each.expected:.8g}",
+            f"{each.computed:.8g}",
+            f"{each.tolerance:.0e}",
+            f"{'yes' if each.ok else 'NO'}, {each.basis}",
+        )
+    return table
+
+
+def sources_text(numbers: Sequence[RecomputedNumber]) -> Text:
+    """Sources of numbers from publications, and what differs from them."""
+    lines = []
+    for source in dict.fromkeys(each.source for each in numbers):
+        lines.append(source)
+        own = (each for each in numbers if each.source == source and each.differs)
+        lines += [f"  {differs}" for differs in dict.fromkeys(each.differs for each in own)]
+    return Text("\n".join(lines))
 
 
 def _robot_words(robot: RobotSummary) -> Iterator[str]:

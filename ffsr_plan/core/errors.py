@@ -69,6 +69,10 @@ class GoalPoseIgnored(UserWarning):
     """The goal's base pose is not demanded in this mode, and the plan ends at another one."""
 
 
+class NearDynamicSingularity(UserWarning):
+    """A floating robot can hardly move a frame in some direction from where it arrives."""
+
+
 class PlanningError(FfsrPlanError):
     """The input is valid, but no plan exists or none was found."""
 

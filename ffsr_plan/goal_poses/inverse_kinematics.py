@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import whole_number
 from ffsr_plan.dynamics.actuation_mode import Mode
+from ffsr_plan.dynamics.dynamic_singularity import warn_if_near
 from ffsr_plan.goal_poses.cause_of_failure import explained
 from ffsr_plan.goal_poses.pose_error import PoseTarget
 from ffsr_plan.goal_poses.pose_out_of_reach import PoseOutOfReach
@@ -69,20 +70,20 @@ def inverse_kinematics(
         PoseOutOfReach: no joint values were found; with the error of the best ones, and why.
         GoalInCollision: the pose was met in collision only; with all that touches at the clearest
             joint values found.
+
+    Warns:
+        NearDynamicSingularity: free-floating, where `fp.least_singular_value` is below 1e-3.
     """
     target = pose_target(
-        robot,
-        frame,
-        position,
-        attitude,
-        start=start,
-        mode=Mode.parse("mode", mode),
-        base_position=base_position,
-        base_attitude=base_attitude,
-    )
+        robot, frame, position, attitude, start=start, mode=Mode.parse("mode", mode),
+        base_position=base_position, base_attitude=base_attitude,
+    )  # fmt: skip
     rng = np.random.default_rng(whole_number("seed", seed, at_least=0))
     with _causes(target):
-        return PoseSearch(frame, target, scene, rng).first()
+        found = PoseSearch(frame, target, scene, rng).first()
+    if target.mode.floats and robot.nd:
+        warn_if_near(robot, found, frame, attitude is not None)
+    return found
 
 
 def goals_at_pose(

@@ -24,6 +24,7 @@ import pinocchio as pin
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.dynamics.dynamic_singularity import warn_if_near
 from ffsr_plan.dynamics.momentum import connection, generalized_jacobian
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.meetings.meeting import Meeting
@@ -94,7 +95,11 @@ class Arrival:
         return EndState(q, rates, rest[:3], np.concatenate([np.zeros(3), rest[3:]]))
 
     def check(self, state: EndState, limits: FlightLimits) -> None:
-        """Raise `InvalidInput` for a twist that cannot be, or that limits on velocity forbid."""
+        """Raise `InvalidInput` for a twist that cannot be, or that limits on velocity forbid.
+
+        Warns:
+            NearDynamicSingularity: the base floats, and the frame can hardly move in a direction.
+        """
         robot, meeting = self.motion.robot, self.meeting
         twist = np.concatenate([meeting.velocity, meeting.angular_velocity])
         floats = self.motion.mode.floats
@@ -108,6 +113,8 @@ class Arrival:
                 f"({got}), which comes nearest"
             )
             raise InvalidInput(what, value, allowed)
+        if floats:
+            warn_if_near(robot, state.configuration, meeting.frame, attitude=True)
         for name, rate, most in zip(
             robot.joint_names, state.joint_rates, limits.velocity[2:], strict=True
         ):

@@ -12,6 +12,7 @@ from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.checks import finite_array
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.rotations import angle_between, to_angles
+from ffsr_plan.dynamics.dynamic_singularity import SlowestPlace, slowest_place
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.dynamics.wheel_momentum import WheelMomentum, wheel_momentum
 from ffsr_plan.lattice.certificate import Certificate
@@ -181,3 +182,23 @@ class PlanData:
             InvalidInput: a mode without wheels, or a duration or times that are not allowed.
         """
         return wheel_momentum(self.motion, duration, times)
+
+    def least_singular_value(
+        self, frame: str, *, attitude: bool = True, samples: int = 5
+    ) -> SlowestPlace:
+        """Least singular value of a frame's generalized Jacobian along a free-floating plan.
+
+        It is measured at samples, not bounded between them; see `fp.least_singular_value`.
+
+        Args:
+            frame: name of a link, joint or other frame of the model.
+            attitude: whether the frame is to be rotated too, at 1 m per rad, or only moved.
+            samples: of each edge, evenly spaced.
+
+        Returns:
+            The value, and where it is.
+
+        Raises:
+            InvalidInput: another mode, or an argument that is not allowed.
+        """
+        return slowest_place(self.motion, frame, attitude, samples)

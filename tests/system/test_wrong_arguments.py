@@ -174,6 +174,7 @@ def calls(plan, tmp_path_factory):
         fp.momentum.connection: {"robot": robot, "q": q},
         fp.momentum.attitude_rate_map: {"robot": robot, "q": q},
         fp.momentum.generalized_jacobian: {"robot": robot, "q": q, "frame": "left_3"},
+        fp.least_singular_value: {"robot": robot, "q": q, "frame": "left_3", "attitude": True},
         fp.LayeredLattice: {"problem": problem},
         fp.Motion: {"robot": robot, "mode": "free-flying", "start": q, "goal": problem.goal,
                     "positions": np.zeros((3, 3)), "joint_values": np.zeros((3, robot.nd))},
@@ -252,11 +253,18 @@ def test_the_interface_is_covered(calls):
         "Replacement", "Report", "ArmReach", "JointBeyond",
         "Balanced", "Contact", "HeldBase", "RateLimits", "SelfCollision", "SelfCollisions",
         "UncheckedLinks", "RobotSummary", "Scenario",
-        "SearchResult", "SmoothCurve", "SmoothFlight", "SmoothPlan", "Solution", "SpaceRobot",
+        "RecomputedNumber", "SearchResult", "SlowestPlace",
+        "SmoothCurve", "SmoothFlight", "SmoothPlan", "Solution", "SpaceRobot",
         "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum", "Pace", "Poses",
         "TrajectoryContact", "TrajectoryReport",
     }  # fmt: skip
-    without_arguments = {"arm_names", "robot_names", "robot_summaries", "warm_up"}  # or callbacks
+    without_arguments = {
+        "arm_names",
+        "literature",
+        "robot_names",
+        "robot_summaries",
+        "warm_up",
+    }  # or callbacks
     errors = {name for name in fp.__all__ if isinstance(getattr(fp, name), type)
               and issubclass(getattr(fp, name), Exception)}  # fmt: skip
     covered = {function.__name__ for function in calls}

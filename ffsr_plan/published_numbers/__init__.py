@@ -1,0 +1,1 @@
+"""Numbers from publications, recomputed with this package."""

@@ -1,0 +1,1 @@
+"""Robots as publications state them, and their dynamics by sums over the bodies."""
