@@ -6,11 +6,12 @@ import numpy as np
 
 from ffsr_plan.bodies.body_motion import Poses
 from ffsr_plan.collision.distances import ObstacleQuery
-from ffsr_plan.collision.shape_placements import Placements
+from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.shape_arrays import BOX
+from ffsr_plan.scene.scene import Scene
 
 
 def in_axes(placed: Placements, poses: Poses, shifts: Array) -> Placements:
@@ -88,3 +89,23 @@ class BodyDistances:
     def _shifts(self, rows: IntArray, offsets: Array) -> Array:
         """(k, 3) displacements in the axes of the body [m]."""
         return np.asarray((offsets[:, None] @ self._turns[rows])[:, 0])
+
+
+def distances_in_time(robot: SpaceRobot, scene: Scene, q: Array, times: Array) -> Array:
+    """Least distances of configurations to all obstacles, each where they are at its time.
+
+    Args:
+        robot: the robot.
+        scene: the obstacles.
+        q: (n, nq) configurations.
+        times: (n,) [s].
+
+    Returns:
+        (n,) distances [m].
+    """
+    found = ObstacleQuery(robot, scene.at_rest).distances(q)
+    placed, rows, still = shape_placements(robot, q), np.arange(len(q)), np.zeros((len(q), 3))
+    for body, at_rest in zip(scene.bodies, scene.body_scenes, strict=True):
+        query = ObstacleQuery(robot, at_rest)
+        found = BodyDistances(robot, query, placed, body.poses(times)).least(rows, still, found)
+    return found
