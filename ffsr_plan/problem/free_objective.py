@@ -3,8 +3,8 @@
 L is the Euclidean length in base position, wheels' turn and joint values with the weights of Eq. 4,
 and F = L + delta sum of 1 / d, in units of length. The clearances d are taken at 39 stations at
 equal steps of L, as many as the inner nodes of a lattice of 40 divisions: for the straight path F
-is that of Eq. 8 on such a lattice, and corners that are added to a path do not change it. Where bodies
-move, the stations are at equal shares of the edges, which follow one another at the problem's pace.
+is that of Eq. 8 on such a lattice, and corners that are added to a path do not change it. Where
+bodies move, stations are at equal shares of the edges, which follow one another at the pace given.
 """
 
 from __future__ import annotations

@@ -47,6 +47,7 @@ class ProgressRoadmap:
         layers: int,
         deadline: Deadline,
         counted: int = 1,
+        fastest: float = np.inf,
     ) -> None:
         """Set up the lattice and evaluate its nodes as far as obstacles at rest count.
 
@@ -57,6 +58,7 @@ class ProgressRoadmap:
             layers: m, number of steps in time.
             deadline: after which measurements raise `OutOfTime`.
             counted: clearances at each so many layers count in F.
+            fastest: way of the base over an edge, at most [m].
 
         Raises:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
@@ -69,13 +71,11 @@ class ProgressRoadmap:
         self.offsets, self.origin, self.heads = sides.offsets, sides.origin, sides.heads
         self._prover = Prover(self.steps.motion, scene.at_rest, problem.tolerance, deadline)
         self.edges = self._edges_without_self_collision()
-        across = np.linalg.norm(sides.ways, axis=1) * problem.position_weight
-        lengths = np.sqrt(self.steps.lengths[:, None] ** 2 + across**2)
-        self.edge_costs = lengths / problem.length_unit
+        self.edge_costs = self._lengths(fastest) / problem.length_unit
         count, n = len(self.steps.values), len(self.offsets)
         places, nodes = np.divmod(np.arange(count * n), n)
         found = self._prover.clearances(self.steps.corners[places], self.offsets[nodes])
-        self._still: Array = found.reshape(count, n)
+        self._still: Array = np.where(way.holds(self.offsets), found.reshape(count, n), 0.0)
         shape = len(self.steps.lengths), n, self.heads.shape[1]
         self.at_rest: States = np.zeros(shape, dtype=np.int8)
         self._bodies: ProgressBodies | None = None
@@ -203,6 +203,15 @@ class ProgressRoadmap:
         for layer, place in ((0, self.steps.start), (len(self._bounds) - 1, self.steps.goal)):
             self.node_costs[layer] = np.inf  # no other node begins or ends a path
             self.node_costs[layer, place, self.origin] = 0.0
+
+    def _lengths(self, fastest: float) -> Array:
+        """(E, W) length of each edge with each step aside [m]; infinite where it is too fast."""
+        along, aside = self.steps.motion.base_steps(), self._sides.ways
+        added = np.sum(aside**2, axis=1) + 2.0 * along @ aside.T
+        squares = self.steps.lengths[:, None] ** 2 + added * self.problem.position_weight**2
+        moved = np.linalg.norm(along[:, None] + aside, axis=2)
+        lengths = np.sqrt(np.maximum(squares, 0.0))
+        return np.where(moved <= fastest * (1.0 + 1e-9), lengths, np.inf)
 
     def _edges_without_self_collision(self) -> IntArray:
         """(A, D) the steps on which no links touch one another; -1 for others."""

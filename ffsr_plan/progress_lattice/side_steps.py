@@ -36,6 +36,23 @@ class SideSteps:
         return cls(np.zeros((1, 3)), 0, heads, np.zeros((1, 3)), np.zeros((1, 1)))
 
     @classmethod
+    def around(cls, axes: IntArray, half_count: int, spacing: float) -> SideSteps:
+        """A grid along axes of the world, with steps aside to all neighbours.
+
+        Args:
+            axes: (k,) numbers of the axes.
+            half_count: nodes to either side.
+            spacing: of the nodes [m].
+        """
+        once = range(-half_count, half_count + 1)
+        indices = np.array(list(product(once, repeat=len(axes))), dtype=np.int64)
+        directions = np.eye(3)[axes]
+        offsets = spacing * indices @ directions
+        distances = np.linalg.norm(offsets[:, None] - offsets, axis=2)
+        heads, moves = _steps(indices.reshape(len(offsets), -1), 1)
+        return cls(offsets, len(offsets) // 2, heads, spacing * moves @ directions, distances)
+
+    @classmethod
     def of(cls, lattice: LayeredLattice) -> SideSteps:
         """The offsets of a lattice with progress.
 
@@ -44,18 +61,22 @@ class SideSteps:
         """
         settings = lattice.problem.given_lattice
         assert settings.progress is not None
-        once = range(-settings.progress.aside, settings.progress.aside + 1)
-        moves = sorted(
-            product(once, repeat=len(settings.axes)), key=lambda m: sum(x * x for x in m)
-        )
-        number = {tuple(row): k for k, row in enumerate(lattice.indices.tolist())}
-        heads = [
-            [number.get(tuple(np.add(row, move).tolist()), -1) for move in moves]
-            for row in lattice.indices.tolist()
-        ]
+        heads, moves = _steps(lattice.indices, settings.progress.aside)
         spacing = np.array([getattr(settings, name).spacing for name in settings.axes])
-        ways = (np.array(moves).reshape(len(moves), -1) * spacing) @ lattice.directions
+        ways = (moves * spacing) @ lattice.directions
         return cls(
-            np.array(lattice.offsets), lattice.origin, np.array(heads, dtype=np.int64), ways,
-            np.array(lattice.distances),
+            np.array(lattice.offsets), lattice.origin, heads, ways, np.array(lattice.distances)
         )  # fmt: skip
+
+
+def _steps(indices: IntArray, most: int) -> tuple[IntArray, IntArray]:
+    """(n, W) node that each step aside leads to, and (W, axes) the steps, the smallest first."""
+    once, axes = range(-most, most + 1), indices.shape[1]
+    moves = sorted(product(once, repeat=axes), key=lambda m: sum(x * x for x in m))
+    number = {tuple(row): k for k, row in enumerate(indices.tolist())}
+    heads = [
+        [number.get(tuple(np.add(row, move).tolist()), -1) for move in moves]
+        for row in indices.tolist()
+    ]
+    steps: IntArray = np.array(moves, dtype=np.int64).reshape(len(moves), axes)
+    return np.array(heads, dtype=np.int64), steps

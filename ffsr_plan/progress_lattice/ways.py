@@ -10,12 +10,13 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.free_objective import edge_lengths
 from ffsr_plan.problem.problem import Problem
 
 _STRAIGHT = 1e-9  # difference of two unit vectors of one direction
+_INSIDE = 1e-9  # [m] beyond the window that rounding may bring about
 
 
 class Way(Protocol):
@@ -39,6 +40,10 @@ class Way(Protocol):
 
     def lengths(self, places: IntArray) -> Array:
         """(k,) length of each step through places (k + 1,) without offsets [m]."""
+        ...
+
+    def holds(self, offsets: Array) -> Flags:
+        """(A, n) whether the base may be at offsets (n, 3) from each place [m]."""
         ...
 
 
@@ -76,6 +81,10 @@ class StraightWay:
         share = self.values[places] / self._steps
         along, turned = np.diff(share), np.diff(np.clip(share, 0.0, 1.0))
         return np.sqrt((along * base) ** 2 + turned**2 * max(rest, 0.0))
+
+    def holds(self, offsets: Array) -> Flags:
+        """See `Way`: anywhere."""
+        return np.full((len(self.values), len(offsets)), True)
 
 
 class LargestStep(NamedTuple):
@@ -132,6 +141,14 @@ class PathWay:
         """See `Way`."""
         steps, nearer = np.abs(np.diff(places)), np.minimum(places[:-1], places[1:])
         return np.where(steps == 0, 0.0, self._steps[np.minimum(nearer, len(self._steps) - 1)])
+
+    def holds(self, offsets: Array) -> Flags:
+        """See `Way`: in the problem's window."""
+        if self._problem.mode.floats:
+            return np.full((len(self.values), len(offsets)), True)
+        low, high = self._problem.base_window
+        places = self._places[:, None, :3] + offsets
+        return np.asarray(np.all((places >= low - _INSIDE) & (places <= high + _INSIDE), axis=2))
 
 
 def _turning(corners: Array) -> IntArray:
