@@ -65,7 +65,7 @@ def _is_free(edge: Edge, begin: float, end: float, first: float, last: float) ->
     each = edge.travel(begin, end) + edge.rounding
     if first + last > float(each.max(initial=0.0)):
         return True
-    return bool(((edge.parts(begin) + edge.parts(end)) > each).all())
+    return bool((edge.margins(begin, end, each) > 0.0).all())
 
 
 def _travel(edge: Edge, begin: float, end: float) -> float:

@@ -180,7 +180,7 @@ def _contact(
     end = float(spans[-1].times[-1])
     times = np.append(time, np.linspace(time, end, SAMPLES))
     q = configurations_at(spans, times)
-    links, fixed = SelfQuery(robot), ObstacleQuery(robot, scene) if not scene.bodies else None
+    links, fixed = SelfQuery(robot), ObstacleQuery(robot, scene) if not scene.moves else None
     deepest, when = named(scene, pair), time
     for each, at in zip(q, times.tolist(), strict=True):
         placed = scene.at(at)

@@ -310,6 +310,8 @@ class PathNotFound(PlanningError):
             spread; empty otherwise.
         spread: greatest distance of a node of the trees from start and goal from their roots, in
             which 0.6 m count as a radian [m].
+        paths: paths past what is at rest, none of which could be run among the bodies that move.
+        closed_at: time from which on the last of them was closed [s]; None if it was too long.
     """
 
     seconds: float
@@ -324,9 +326,17 @@ class PathNotFound(PlanningError):
     on_lattice: str = ""
     enclosed: str = ""
     spread: tuple[float, float] = (0.0, 0.0)
+    paths: int = 0
+    closed_at: float | None = None
 
     def message(self) -> str:
         """What was tried, what is in the way, and what may help; last, what the lattice said."""
+        if self.paths:
+            text = f"no path could be run in time among the bodies that move, in {self.seconds:.3g}"
+            text += f" s: {self.paths} paths were found past what is at rest"
+            if self.closed_at is not None:
+                text += f", the last of which is closed from {self.closed_at:.4g} s on"
+            return text + helping(self.advice)
         text = f"no path was found in {self.seconds:.3g} s: {self.tries} searches, {self.nodes} "
         text += f"nodes, {self.meetings} meetings of the trees from start and goal"
         text += f", {self.refused} paths refused by the proof" if self.refused else ""

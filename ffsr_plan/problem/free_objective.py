@@ -3,13 +3,15 @@
 L is the Euclidean length in base position, wheels' turn and joint values with the weights of Eq. 4,
 and F = L + delta sum of 1 / d, in units of length. The clearances d are taken at 39 stations at
 equal steps of L, as many as the inner nodes of a lattice of 40 divisions: for the straight path F
-is that of Eq. 8 on such a lattice, and corners that are added to a path do not change it.
+is that of Eq. 8 on such a lattice, and corners that are added to a path do not change it. Where
+bodies move, stations are at equal shares of the edges, which follow one another at the pace given.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ffsr_plan.collision.debris.distances_in_time import distances_in_time
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.dynamics.motion import Motion
@@ -84,10 +86,8 @@ def stations_objective(problem: Problem, motion: Motion) -> tuple[float, float]:
     Returns:
         L [m], and F with the clearances at the stations [length units].
     """
-    lengths = edge_lengths(problem, motion)
-    query = ObstacleQuery(problem.robot, problem.obstacles)
-    length, clearances = float(lengths.sum()), query.distances(motion.at(*stations(lengths)))
-    return length, free_objective(problem, length, clearances)
+    length = float(edge_lengths(problem, motion).sum())
+    return length, free_objective(problem, length, _clearances(problem, motion, STATIONS))
 
 
 def whole_objective(problem: Problem, motion: Motion, length: float) -> float:
@@ -106,10 +106,9 @@ def whole_objective(problem: Problem, motion: Motion, length: float) -> float:
     pieces = STATIONS + 1
     if problem.delta == 0.0:
         return motion_objective(problem, length, np.full(pieces, np.inf))
-    edge, time = stations(edge_lengths(problem, motion), pieces * _SAMPLES - 1)
-    query = ObstacleQuery(problem.robot, problem.obstacles)
-    inner = query.distances(motion.at(edge, time))
-    ends = query.distances(motion.configurations()[[0, -1]])
+    inner = _clearances(problem, motion, pieces * _SAMPLES - 1)
+    places = np.array([0.0, motion.edges])
+    ends = _measured(problem, motion.configurations()[[0, -1]], places, motion.edges)
     all_of_them = np.concatenate([ends[:1], inner, ends[1:]])
     least = [np.min(all_of_them[k * _SAMPLES : (k + 1) * _SAMPLES + 1]) for k in range(pieces)]
     return motion_objective(problem, length, np.array(least))
@@ -119,3 +118,22 @@ def least_objective(problem: Problem) -> float:
     """A bound below which F of no path falls: the straight way, all obstacles far away."""
     cap = np.inf if problem.clearance_cap is None else problem.clearance_cap
     return free_objective(problem, problem.straight_length, np.full(STATIONS, cap))
+
+
+def _clearances(problem: Problem, motion: Motion, count: int) -> Array:
+    """(count,) clearances at stations inside a motion [m]."""
+    if problem.scene.moves:
+        places: Array = motion.edges * np.arange(1, count + 1) / (count + 1)
+        edge = np.minimum(places.astype(np.int64), motion.edges - 1)
+        time = places - edge
+    else:
+        edge, time = stations(edge_lengths(problem, motion), count)
+    return _measured(problem, motion.at(edge, time), edge + time, motion.edges)
+
+
+def _measured(problem: Problem, q: Array, places: Array, edges: int) -> Array:
+    """(n,) clearances of configurations (n, nq) at places (n,) on a path of so many edges [m]."""
+    robot, scene, pace = problem.robot, problem.obstacles, problem.pace(edges)
+    if not scene.moves or pace is None:
+        return ObstacleQuery(robot, scene).distances(q)
+    return distances_in_time(robot, scene, q, pace.instants(places))

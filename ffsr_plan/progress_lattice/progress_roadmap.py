@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 
 from ffsr_plan.collision.contacts import goal_in_collision, start_in_collision
@@ -11,11 +9,12 @@ from ffsr_plan.collision.distances import SelfQuery
 from ffsr_plan.core.arrays import Array, Flags, IntArray, States
 from ffsr_plan.lattice.certificate import Counts
 from ffsr_plan.lattice.edge_states import FREE, REFUSED, UNKNOWN
-from ffsr_plan.lattice.layered_lattice import LayeredLattice
 from ffsr_plan.problem.objective import nearness
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.progress_lattice.progress_bodies import ProgressBodies
 from ffsr_plan.progress_lattice.progress_steps import ProgressSteps
+from ffsr_plan.progress_lattice.side_steps import SideSteps
+from ffsr_plan.progress_lattice.ways import Way
 from ffsr_plan.proof.interval_halving import Verdict
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.time_limit.deadline import Deadline
@@ -28,9 +27,8 @@ class ProgressRoadmap:
 
     Attributes:
         problem: what it was built from.
-        lattice: the offsets.
         steps: the steps of progress.
-        offsets: (n, 3) of the base from the straight way [m].
+        offsets: (n, 3) of the base from the way [m].
         origin: number of the node without offset.
         heads: (n, W) offset that each step aside from each offset leads to; -1 for none.
         edges: (A, D) edge of each step from each place; -1 where there is none, or links touch.
@@ -41,26 +39,42 @@ class ProgressRoadmap:
         moving: (m, E, n, W) the same for bodies that move; (0, ...) without any.
     """
 
-    def __init__(self, problem: Problem, deadline: Deadline) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        way: Way,
+        sides: SideSteps,
+        layers: int,
+        deadline: Deadline,
+        counted: int = 1,
+        fastest: float = np.inf,
+    ) -> None:
         """Set up the lattice and evaluate its nodes as far as obstacles at rest count.
+
+        Args:
+            problem: gives robot, obstacles, objective and pace.
+            way: the places of progress.
+            sides: the offsets.
+            layers: m, number of steps in time.
+            deadline: after which measurements raise `OutOfTime`.
+            counted: clearances at each so many layers count in F.
+            fastest: way of the base over an edge, at most [m].
 
         Raises:
             StartInCollision, GoalInCollision: with link, obstacle and depth.
         """
         self.problem = problem
-        scene, m = problem.obstacles, problem.given_lattice.divisions
-        self.steps, lattice = ProgressSteps(problem), LayeredLattice(problem)
-        self.lattice, self.offsets, self.origin = lattice, lattice.offsets, lattice.origin
-        self.heads, self._asides = self._steps_aside(lattice)
+        scene, m = problem.obstacles, layers
+        self.steps = ProgressSteps(way)
+        self._sides, self._counted = sides, np.arange(m + 1) % counted == 0
+        self.offsets, self.origin, self.heads = sides.offsets, sides.origin, sides.heads
         self._prover = Prover(self.steps.motion, scene.at_rest, problem.tolerance, deadline)
         self.edges = self._edges_without_self_collision()
-        across = np.linalg.norm(self._asides, axis=1) * problem.position_weight
-        lengths = np.sqrt(self.steps.lengths[:, None] ** 2 + across**2)
-        self.edge_costs = lengths / problem.length_unit
+        self.edge_costs = self._lengths(fastest) / problem.length_unit
         count, n = len(self.steps.values), len(self.offsets)
         places, nodes = np.divmod(np.arange(count * n), n)
         found = self._prover.clearances(self.steps.corners[places], self.offsets[nodes])
-        self._still: Array = found.reshape(count, n)
+        self._still: Array = np.where(way.holds(self.offsets), found.reshape(count, n), 0.0)
         shape = len(self.steps.lengths), n, self.heads.shape[1]
         self.at_rest: States = np.zeros(shape, dtype=np.int8)
         self._bodies: ProgressBodies | None = None
@@ -72,7 +86,6 @@ class ProgressRoadmap:
         self._check_ends(m)
         self._bounds: Array = np.tile(self._still, (m + 1, 1, 1))
         self._known: Flags = np.full(self._bounds.shape, self._bodies is None)
-        self._distances = np.array(lattice.distances)
         self.node_costs = np.empty(self._bounds.shape)
         self._node_queries = self._prover.queries
         self._price(0, m + 1)
@@ -100,7 +113,7 @@ class ProgressRoadmap:
         nodes = np.column_stack([layers, places[layers], offsets[layers]])
         between, travel = self.steps.between, self._bodies.travel
         bounds, known = self._bounds, self._known
-        take_in(nodes, exact, self._distances, between, travel, _WINDOW, bounds, known)
+        take_in(nodes, exact, self._sides.distances, between, travel, _WINDOW, bounds, known)
         low = max(int(layers[0]) - _WINDOW, 0)
         self._price(low, min(int(layers[-1]) + _WINDOW + 1, len(path)))
         after = self.node_costs[layers, places[layers], offsets[layers]]
@@ -185,33 +198,26 @@ class ProgressRoadmap:
         """Work out the costs of the nodes of some layers."""
         bounds = self._bounds[first:end]
         costs = np.where(bounds > 0.0, nearness(self.problem, bounds), np.inf)
+        costs[(bounds > 0.0) & ~self._counted[first:end, None, None]] = 0.0
         self.node_costs[first:end] = costs
         for layer, place in ((0, self.steps.start), (len(self._bounds) - 1, self.steps.goal)):
             self.node_costs[layer] = np.inf  # no other node begins or ends a path
             self.node_costs[layer, place, self.origin] = 0.0
+
+    def _lengths(self, fastest: float) -> Array:
+        """(E, W) length of each edge with each step aside [m]; infinite where it is too fast."""
+        along, aside = self.steps.motion.base_steps(), self._sides.ways
+        added = np.sum(aside**2, axis=1) + 2.0 * along @ aside.T
+        squares = self.steps.lengths[:, None] ** 2 + added * self.problem.position_weight**2
+        moved = np.linalg.norm(along[:, None] + aside, axis=2)
+        lengths = np.sqrt(np.maximum(squares, 0.0))
+        return np.where(moved <= fastest * (1.0 + 1e-9), lengths, np.inf)
 
     def _edges_without_self_collision(self) -> IntArray:
         """(A, D) the steps on which no links touch one another; -1 for others."""
         free = np.array([verdict.free for verdict in self._prover.links.verdicts()])
         edges = self.steps.edges
         return np.where((edges >= 0) & free[edges], edges, -1)
-
-    def _steps_aside(self, lattice: LayeredLattice) -> tuple[IntArray, Array]:
-        """(n, W) offset that each step aside leads to, and (W, 3) how far each goes [m]."""
-        settings = lattice.problem.given_lattice
-        assert settings.progress is not None
-        once = range(-settings.progress.aside, settings.progress.aside + 1)
-        moves = sorted(
-            product(once, repeat=len(settings.axes)), key=lambda m: sum(x * x for x in m)
-        )
-        number = {tuple(row): k for k, row in enumerate(lattice.indices.tolist())}
-        heads = [
-            [number.get(tuple(np.add(row, move).tolist()), -1) for move in moves]
-            for row in lattice.indices.tolist()
-        ]
-        spacing = np.array([getattr(settings, name).spacing for name in settings.axes])
-        ways = (np.array(moves).reshape(len(moves), -1) * spacing) @ lattice.directions
-        return np.array(heads, dtype=np.int64), ways
 
     def _check_ends(self, last: int) -> None:
         """Raise if start or goal, on the layers 0 and `last`, touches something at its time."""

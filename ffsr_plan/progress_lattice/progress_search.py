@@ -9,8 +9,6 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.core.arrays import IntArray
-from ffsr_plan.core.errors import NoPath
-from ffsr_plan.problem.advice import against_closed_times
 from ffsr_plan.progress_lattice.progress_roadmap import ProgressRoadmap
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -31,21 +29,20 @@ class ProgressSearch:
         self._costs[0] = np.where(np.isfinite(roadmap.node_costs[0]), 0.0, np.inf)
         self._before: IntArray = np.zeros(shape, dtype=np.int64)
 
-    def path(self) -> IntArray:
+    def path(self) -> IntArray | None:
         """The path with the least F, all its edges proven free.
 
         Returns:
-            (m + 1, 3) place, offset, and step aside towards the next layer.
+            (m + 1, 3) place, offset, and step aside towards the next layer; None if there is none.
 
         Raises:
-            NoPath: there is none.
             OutOfTime: at the deadline.
         """
         roadmap, first = self._roadmap, 0
         while True:
             path = self._shortest(first)
             if path is None:
-                raise self._no_path()
+                return None
             changed = roadmap.learn(path)
             if changed is None:
                 changed = roadmap.prove(path)
@@ -69,10 +66,8 @@ class ProgressSearch:
         trace(self._before, roadmap.heads.shape[1], steps.goal, roadmap.origin, path)
         return path
 
-    def _no_path(self) -> NoPath:
-        """The error for a lattice without a path: the first layer that cannot be reached."""
+    @property
+    def closed_layer(self) -> int:
+        """Where there is no path, the first layer that cannot be reached; the last if all can."""
         reached = np.isfinite(self._costs).any(axis=(1, 2))
-        problem = self._roadmap.problem
-        layer = int(np.argmin(reached)) if not reached.all() else len(reached) - 1
-        divisions = problem.given_lattice.divisions
-        return NoPath(layer, (), divisions, (), against_closed_times(problem))
+        return int(np.argmin(reached)) if not reached.all() else len(reached) - 1

@@ -24,6 +24,7 @@ def check_ends(problem: Problem) -> Problem:
 
     Where the attitude reacts, it depends on the way whether a goal touches an obstacle, unless one
     touches the base whatever the attitude; whether its links touch each other does not depend.
+    Bodies that move are where they are at the begin and at the end of the duration.
 
     Args:
         problem: a problem without a lattice.
@@ -35,29 +36,31 @@ def check_ends(problem: Problem) -> Problem:
         StartInCollision: with all that touches there, and at the goal.
         GoalInCollision: with all that touches at the first goal, if every goal is refused.
     """
-    robot, scene = problem.robot, problem.obstacles
-    free = [goal for goal in problem.goals if not _touching(problem, goal)]
+    robot, first = problem.robot, problem.obstacles.at(0.0)
+    last = problem.obstacles.at(problem.duration or 0.0)
+    free = [goal for goal in problem.goals if not _touching(problem, last, goal)]
     blocked = None if free else _arrival(problem)
-    if contacts(robot, scene, problem.start):
-        raise start_in_collision(robot, scene, problem.start, blocked)
+    if contacts(robot, first, problem.start):
+        end = None if problem.scene.moves else blocked  # at another time
+        raise start_in_collision(robot, first, problem.start, end)
     if blocked is not None:
-        around = scene if _is_certain(problem, problem.goal) else Scene()
+        around = last if _is_certain(problem, last, problem.goal) else Scene()
         raise goal_in_collision(robot, around, blocked)
     if len(free) == len(problem.goals):
         return problem
     return replace(problem, goal=free[0], alternatives=free[1:])
 
 
-def _touching(problem: Problem, goal: Array) -> tuple[Contact, ...]:
-    """What touches at a goal whatever the way to it."""
-    around = problem.obstacles if _is_certain(problem, goal) else Scene()
+def _touching(problem: Problem, scene: Scene, goal: Array) -> tuple[Contact, ...]:
+    """What touches at a goal whatever the way to it, in a scene where all is at rest."""
+    around = scene if _is_certain(problem, scene, goal) else Scene()
     return contacts(problem.robot, around, _demanded(problem, goal))
 
 
-def _is_certain(problem: Problem, goal: Array) -> bool:
+def _is_certain(problem: Problem, scene: Scene, goal: Array) -> bool:
     """Whether obstacles are touched at a goal, or not, whatever the way to it."""
     demanded = problem.reach_attitude or problem.mode.has_wheels
-    return demanded or _touches_at_any_attitude(problem, goal)
+    return demanded or _touches_at_any_attitude(problem, scene, goal)
 
 
 def _demanded(problem: Problem, goal: Array) -> Array:
@@ -80,12 +83,12 @@ def _arrival(problem: Problem) -> Array:
     return np.asarray(motion.configurations()[-1])
 
 
-def _touches_at_any_attitude(problem: Problem, goal: Array) -> bool:
+def _touches_at_any_attitude(problem: Problem, scene: Scene, goal: Array) -> bool:
     """Whether an obstacle reaches into a ball about the base origin that some shape contains.
 
     That ball stays where it is, however the base is turned at the goal.
     """
-    robot, scene, shapes = problem.robot, problem.obstacles, problem.robot.primitives
+    robot, shapes = problem.robot, problem.robot.primitives
     if problem.mode.floats or not len(scene) or not len(shapes.kinds):
         return False
     placed = shape_placements(robot, goal[None])

@@ -8,7 +8,7 @@ from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import OutOfTime
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.problem.problem import Problem
-from ffsr_plan.search.records import SearchMonitor, Solution, TreeCycle
+from ffsr_plan.search.records import Branches, SearchMonitor, Solution, TreeCycle
 from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.end_checks import check_ends
 from ffsr_plan.tree_search.kernels.closed_loops import ENOUGH
@@ -118,6 +118,10 @@ class SearchRounds:
                 self.space, self._restarts, self.proven, interrupted, seconds, self._missed
             )
         return self.proven.solution(self._restarts.trees, interrupted)
+
+    def branches(self) -> Branches:
+        """Edges of the trees of the last search, for pictures."""
+        return self.proven.branches(self._restarts.trees)
 
     def _checks(self) -> int:
         return int(self.space.arrays.setup[0]["checks"])
@@ -245,6 +249,6 @@ class SearchRounds:
             TreeCycle(
                 number, rounds, objective, new / unit, self._checks(),
                 self._restarts.meetings.nodes, path, arrival,
-                self.proven.branches(self._restarts.trees),
+                self.branches(),
             )
         )  # fmt: skip

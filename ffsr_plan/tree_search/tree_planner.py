@@ -28,6 +28,9 @@ class TreePlanner(TreeSettings):
     Work is counted in configurations checked against obstacles and links, so that a seed gives the
     same plan on any machine; a million of them take some five seconds.
 
+    Among bodies that move, many paths are found past what is at rest, and each is run in time as
+    well as it can be, with waits and ways back; the best run is the plan.
+
     The settings are those of `TreeSettings`.
     """
 
@@ -58,6 +61,8 @@ class TreePlanner(TreeSettings):
             PathNotFound: with what was tried, and what is in the way.
             OutOfTime: by the deadline, in the proof of the first path.
         """
+        from ffsr_plan.search.timed_runs import TimedRuns, TimeSteps
+        from ffsr_plan.tree_search.search_in_time import SearchInTime
         from ffsr_plan.tree_search.search_rounds import SearchRounds
 
         self.refuse(problem)
@@ -68,10 +73,16 @@ class TreePlanner(TreeSettings):
         deadline = request.deadline or Deadline()
         deadline.stage = "the proof of the first path"
         request = request._replace(deadline=deadline)
+        checks = self.checks or (MOST_CHECKS if deadline.is_limited else _DEFAULT_CHECKS)
+        if problem.scene.moves:
+            steps = TimeSteps(self.time_steps, self.base_speed, self.joint_speed)
+            runs = TimedRuns(problem, steps, deadline)
+            search = SearchInTime(problem, self, rng, request.monitor(), runs)
+            if request.incumbent is not None:
+                search.begin_with(request.incumbent)
+            return search.solution(search.run(checks, request.first))
         rounds = SearchRounds(problem, self, rng, request.monitor())
-        limited = deadline.is_limited
         if request.incumbent is not None:
             rounds.begin_with(request.incumbent)
-        checks = self.checks or (MOST_CHECKS if limited else _DEFAULT_CHECKS)
         interrupted = rounds.run(checks, request.first)
         return rounds.solution(interrupted, deadline.elapsed())

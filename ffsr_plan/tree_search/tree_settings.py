@@ -7,8 +7,11 @@ from typing import Annotated
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.setting_rules import Number, WholeNumber
 from ffsr_plan.core.settings import settings
+from ffsr_plan.problem.free_objective import STATIONS
 
 _Reach = Annotated[float, Number(at_least=-1e3, at_most=1e3)]
+LEAST_STEPS = STATIONS + 1
+"""Steps of time come in multiples of this: at their ends F counts the clearance."""
 MOST_CHECKS = 10**12
 """Configurations that a search may check."""
 
@@ -30,6 +33,11 @@ class TreeSettings:
         ways: ways round that are improved side by side.
         margin: clearance that the search keeps, from obstacles and between links [m]; at most half
             of that at the start. Proofs need none of it.
+        time_steps: where bodies move, steps of equal time in each of which the robot goes on along
+            its path, waits or goes back; a multiple of 40.
+        base_speed: of the base where bodies move, at most [m/s]; None for twice that of a steady
+            run that takes the whole duration.
+        joint_speed: of any joint where bodies move, at most [rad/s or m/s]; None likewise.
     """
 
     checks: Annotated[int, WholeNumber(at_least=1, at_most=MOST_CHECKS)] | None = None
@@ -39,7 +47,12 @@ class TreeSettings:
     roots: Annotated[int, WholeNumber(at_least=1, at_most=1000)] = 12
     ways: Annotated[int, WholeNumber(at_least=1, at_most=100)] = 3
     margin: Annotated[float, Number(at_least=1e-6, at_most=1e3)] = 1e-3
+    time_steps: Annotated[int, WholeNumber(at_least=LEAST_STEPS, at_most=10_000)] = 80
+    base_speed: Annotated[float, Number(above=0.0, at_most=1e6)] | None = None
+    joint_speed: Annotated[float, Number(above=0.0, at_most=1e6)] | None = None
 
     def __post_init__(self) -> None:
         if not self.reaches or 0.0 in self.reaches:
             raise InvalidInput("reaches", self.reaches, "at least one length that is not zero")
+        if self.time_steps % LEAST_STEPS:
+            raise InvalidInput("time_steps", self.time_steps, f"a multiple of {LEAST_STEPS}")

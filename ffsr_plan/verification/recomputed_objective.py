@@ -183,6 +183,8 @@ def free_lengths(plan: PlanData) -> Array:
 def station_clearances(plan: PlanData, bodies: Bodies, lengths: Array) -> Array:
     """Clearances that F counts: at equal steps of length, the ends in front and behind.
 
+    Where bodies move, steps are equal in number of edges.
+
     Args:
         plan: a plan without a lattice.
         bodies: the robot, from its URDF.
@@ -191,7 +193,8 @@ def station_clearances(plan: PlanData, bodies: Bodies, lengths: Array) -> Array:
     Returns:
         (41,) clearances [m].
     """
-    steps = lengths if lengths.max() > 0.0 else np.ones_like(lengths)
+    by_length = lengths.max() > 0.0 and not plan.problem.scene.moves
+    steps = lengths if by_length else np.ones_like(lengths)
     whole = np.concatenate([[0.0], np.cumsum(steps)])
     wanted = np.linspace(0.0, whole[-1], _PIECES + 1)
     place = np.interp(wanted, whole, np.arange(len(whole)))

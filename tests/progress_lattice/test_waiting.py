@@ -8,6 +8,7 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan.core import rotations
 from ffsr_plan.progress_lattice.progress_steps import ProgressSteps
+from ffsr_plan.progress_lattice.ways import StraightWay
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +55,8 @@ def test_a_goal_in_a_cup_is_reached_by_going_back():
 
 def test_going_back_undoes_the_turn_of_the_base():
     door = fp.load_scenario("door")
-    steps = ProgressSteps(replace(door, lattice=replace(door.lattice, progress=fp.Progress(6, 3))))
+    lattice = replace(door.lattice, progress=fp.Progress(6, 3))
+    steps = ProgressSteps(StraightWay(replace(door, lattice=lattice)))
     attitudes = steps.motion.attitudes
     share = steps.motion.positions[:, 0] / 10.0
     for place, corner in enumerate(steps.corners):
@@ -68,7 +70,8 @@ def test_going_back_undoes_the_turn_of_the_base():
 def test_every_step_is_an_edge_of_the_motion_that_makes_them(most):
     door = fp.load_scenario("door")
     progress = fp.Progress(5, most, before=2, beyond=1)
-    steps = ProgressSteps(replace(door, lattice=replace(door.lattice, progress=progress)))
+    lattice = replace(door.lattice, progress=progress)
+    steps = ProgressSteps(StraightWay(replace(door, lattice=lattice)))
     positions = steps.motion.positions[:, 0] / 2.0
     for place, row in enumerate(steps.edges):
         for step, edge in zip(range(-most, most + 1), row, strict=True):

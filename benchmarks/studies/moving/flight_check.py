@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -125,9 +126,9 @@ class UrdfRobot:
         whole = (inertias + self.masses[:, None, None] * (squares - outer)).sum(axis=0)
         return -np.linalg.solve(whole, carried)
 
-    def attitudes(self, attitude, joints, change):
+    def attitudes(self, attitude, joints, change, grid=_GRID):
         """A spline of the base's attitude (xyzw) over shares of a straight joint path."""
-        grid = np.linspace(0.0, 1.0, _GRID + 1)
+        grid = np.linspace(0.0, 1.0, grid + 1)
 
         def slope(share, q):
             x, y, z = self.reaction(joints + share * change, change)
@@ -229,22 +230,38 @@ def check_flight(plan, obstacles):
     """The least separation of a plan's flight from what it meets.
 
     Args:
-        plan: a plan in the mode free-flying whose joints follow one straight line.
+        plan: a plan in the mode free-flying.
         obstacles: `Obstacles` of its scene.
     """
     problem, motion = plan.problem, plan.motion
     names = tuple(problem.robot.joint_names)
+    robot = _robot(problem.robot.urdf, names)
     corners, places = np.array(motion.joint_values), np.array(motion.positions)
-    begin, change = corners[0], corners[-1] - corners[0]
-    shares = (corners - begin) @ change / (change @ change)
-    assert np.abs(begin + shares[:, None] * change - corners).max() < 1e-9
     times = obstacles.step * np.arange(obstacles.count + 1)
     at = share_run(times, problem.duration, problem.ramp) * (len(places) - 1)
     every = np.arange(len(places))
     here = np.column_stack([np.interp(at, every, column) for column in places.T])
-    share = np.interp(at, every, shares)
-    given = tuple(problem.start[3:7].tolist()), tuple(begin.tolist()), tuple(change.tolist())
-    turns = _attitudes(problem.robot.urdf, names, *given)(share)
+    joints = np.column_stack([np.interp(at, every, column) for column in corners.T])
+    begin, change = corners[0], corners[-1] - corners[0]
+    shares = (corners - begin) @ change / max(change @ change, 1e-300)
+    if np.abs(begin + shares[:, None] * change - corners).max() < 1e-9:  # one straight line
+        given = tuple(problem.start[3:7].tolist()), tuple(begin.tolist()), tuple(change.tolist())
+        spline = _attitudes(problem.robot.urdf, names, *given)
+        turns = spline(np.interp(at, every, shares))
+    else:
+        turns = _edge_by_edge(robot, np.array(problem.start[3:7]), corners, at)
     base = np.ascontiguousarray(Rotation.from_quat(turns).as_matrix()), here
-    robot = _robot(problem.robot.urdf, names)
-    return obstacles.least(robot, base, begin + share[:, None] * change)
+    return obstacles.least(robot, base, joints)
+
+
+def _edge_by_edge(robot, attitude, corners, at):
+    """(n, 4) attitudes at places on a joint path with corners, its edges integrated in turn."""
+    turns = np.empty((len(at), 4))
+    edges = np.minimum(at.astype(np.int64), len(corners) - 2)
+    for k, (begin, end) in enumerate(pairwise(corners)):
+        here = edges == k
+        turns[here] = attitude
+        if np.any(begin != end):
+            spline = robot.attitudes(attitude, begin, end - begin, grid=60)
+            turns[here], attitude = spline(at[here] - k), spline(1.0)
+    return turns

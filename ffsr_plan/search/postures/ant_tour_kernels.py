@@ -15,6 +15,7 @@ from ffsr_plan.search.postures.cost_kernels import (
     is_free,
     new_workspace,
     node_cost,
+    obstacles_on,
     step_between,
 )
 from ffsr_plan.time_limit.deadline import Deadline
@@ -98,6 +99,7 @@ def add_nodes(
     workspace, free = new_workspace(), is_free(grid)
     if i == 0:
         return
+    obstacles = obstacles_on(grid, i)
     for node in range(first, last):
         b, p = node // count, node % count
         own[b, p] = 0.0
@@ -105,7 +107,7 @@ def add_nodes(
             frames, center = grid.frames[row, p], grid.centers[row, p]
             grid.queries[0] += 1
             clearance = clearance_at(
-                grid.obstacles, frames, grid.places[i, b], center, nominal[i], workspace
+                obstacles, frames, grid.places[i, b], center, nominal[i], workspace
             )
             own[b, p] = node_cost(grid.clearance_cost, clearance, i < m)
 

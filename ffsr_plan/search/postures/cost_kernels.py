@@ -30,7 +30,10 @@ it."""
 
 
 class Obstacles(NamedTuple):
-    """The scene's `ObstacleTree`, and the kinds of the shapes that are held against it."""
+    """The scene's `ObstacleTree`, and the kinds of the shapes that are held against it.
+
+    Where bodies move there is a tree for each layer, one behind another; see `obstacles_on`.
+    """
 
     nodes: Array
     children: NDArray[np.int32]
@@ -59,6 +62,8 @@ class PostureGrid(NamedTuple):
     """Lattice data for the compiled search: b base offsets, n postures, k steps, g shapes."""
 
     obstacles: Obstacles
+    spans: IntArray
+    """(m + 1, 5, 2) rows of nodes, spheres, solids, planes and balls on each layer: first, end."""
     rows: IntArray
     """(m + 1,) row that stands for each layer in the arrays of postures: 0 where all are alike."""
     frames: Array
@@ -158,6 +163,23 @@ def is_free(grid: PostureGrid) -> bool:
 
 
 @kernel
+def obstacles_on(grid: PostureGrid, layer: int) -> Obstacles:
+    """The obstacles where they are when the robot is on a layer."""
+    every, span = grid.obstacles, grid.spans[layer]
+    shaped = len(every.solid) > 0
+    return Obstacles(
+        every.nodes[span[0, 0] : span[0, 1]],
+        every.children[span[0, 0] : span[0, 1]],
+        every.spheres[span[1, 0] : span[1, 1]],
+        every.solid[span[1, 0] : span[1, 1]] if shaped else every.solid[:0],
+        every.solids[span[2, 0] : span[2, 1]],
+        every.planes[span[3, 0] : span[3, 1]],
+        every.balls[span[4, 0] : span[4, 1]],
+        every.kinds,
+    )
+
+
+@kernel
 def clearance_at(
     obstacles: Obstacles,
     frames: Array,
@@ -169,7 +191,7 @@ def clearance_at(
     """Least distance [m] to any obstacle at a node and an attitude; for hulls, of their boxes.
 
     Args:
-        obstacles: of the grid.
+        obstacles: of the layer.
         frames: (g, 15) of the posture.
         place: (3,) of the base offset.
         center: (3,) of the posture.
@@ -308,9 +330,7 @@ def visit(
     Returns:
         The total with the nodes' costs in place of the least ones; infinite beyond the limit.
     """
-    obstacles, frames, places, centers, rows = (
-        grid.obstacles, grid.frames, grid.places, grid.centers, grid.rows,
-    )  # fmt: skip
+    frames, places, centers, rows = grid.frames, grid.places, grid.centers, grid.rows
     nodes, quats = path.nodes, path.quats
     free = is_free(grid)
     for i in range(first, last):
@@ -319,8 +339,9 @@ def visit(
             grid.queries[0] += 1
             row = rows[i]
             clearance = clearance_at(
-                obstacles, frames[row, p], places[i, b], centers[row, p], quats[i], workspace
-            )
+                obstacles_on(grid, i), frames[row, p], places[i, b], centers[row, p], quats[i],
+                workspace,
+            )  # fmt: skip
         path.clearances[i] = clearance
         path.costs[i] = node_cost(grid.clearance_cost, clearance, i + 1 < len(nodes))
         total += path.costs[i] - path.least[i]

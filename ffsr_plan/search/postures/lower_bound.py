@@ -9,6 +9,8 @@ the base by that angle, each at the best rate of all steps.
 
 from __future__ import annotations
 
+from itertools import cycle
+
 import numpy as np
 
 from ffsr_plan.collision.clearance import point_distances
@@ -19,6 +21,7 @@ from ffsr_plan.lattice.optimum import straight_bound
 from ffsr_plan.lattice.shortest_path import LazyShortestPath
 from ffsr_plan.problem.objective import nearness
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
+from ffsr_plan.search.postures.posture_lattice_arrays import layer_scenes
 
 
 def lower_bound(lattice: PostureLattice) -> float:
@@ -36,9 +39,9 @@ def _bound(lattice: PostureLattice) -> float:
     if origin_is_inside(lattice) and len(problem.obstacles) and not base.nominal.mode.floats:
         places = base.nominal.positions[:, None] + base.offsets
         apart = np.empty((m + 1, count))
-        for own, points in zip(apart, places, strict=True):
+        for own, points, scene in zip(apart, places, cycle(layer_scenes(problem)), strict=False):
             lattice.deadline.check()
-            own[:] = point_distances(problem.obstacles, points)
+            own[:] = point_distances(scene, points)
     nodes = nearness(problem, apart)  # at least that of `clearance_cap`
     nodes[[0, -1]] = 0.0
     status = np.zeros((m, count, count), dtype=np.int8)

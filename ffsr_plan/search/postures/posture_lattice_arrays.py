@@ -6,6 +6,8 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.core.rotations import rotate
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.scene.scene import Scene
 from ffsr_plan.search.postures.cost_kernels import (
     FREE_ATTITUDE_ERROR,
     ClearanceCost,
@@ -26,18 +28,10 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
     if nominal.mode.floats:  # the centre of mass, at rest
         center = rotate(problem.start[3:7], lattice.centers[0, lattice.origin])
         places = np.broadcast_to(problem.start[:3] + center, places.shape)
-    tree = problem.obstacles.tree
+    obstacles, spans = _obstacles(problem)
     return PostureGrid(
-        obstacles=Obstacles(
-            np.array(tree.nodes),
-            tree.children.copy(),
-            tree.spheres.copy(),
-            tree.solid.copy(),
-            np.array(tree.solids),
-            np.array(tree.planes),
-            np.array(tree.balls),
-            np.array(problem.robot.primitives.kinds),
-        ),
+        obstacles=obstacles,
+        spans=spans,
         rows=lattice.rows,
         frames=lattice.frames,
         places=np.array(places, order="C"),
@@ -63,6 +57,41 @@ def posture_grid(lattice: PostureLattice) -> PostureGrid:
         radii=_radii(lattice),
         queries=np.zeros(1, dtype=np.int64),
     )
+
+
+def layer_scenes(problem: Problem) -> list[Scene]:
+    """The obstacles where they are on each layer; one scene for all where nothing moves.
+
+    Args:
+        problem: a problem on a lattice.
+    """
+    scene, m = problem.obstacles, problem.given_lattice.divisions
+    pace = problem.pace(m)
+    if not scene.moves or pace is None:
+        return [scene]
+    return [scene.at(time) for time in pace.instants(np.arange(m + 1.0)).tolist()]
+
+
+def _obstacles(problem: Problem) -> tuple[Obstacles, IntArray]:
+    """The trees of all layers, one behind another, and (m + 1, 5, 2) the rows of each."""
+    trees = [scene.tree for scene in layer_scenes(problem)]
+    parts = [(t.nodes, t.spheres, t.solids, t.planes, t.balls) for t in trees]
+    counts = np.array([[len(part) for part in each] for each in parts], dtype=np.int64)
+    ends = np.cumsum(counts, axis=0)
+    spans = np.stack([ends - counts, ends], axis=2)
+    if len(trees) == 1:
+        spans = np.tile(spans, (problem.given_lattice.divisions + 1, 1, 1))
+    nodes, spheres, solids, planes, balls = map(np.concatenate, zip(*parts, strict=True))
+    return Obstacles(
+        nodes,
+        np.concatenate([tree.children for tree in trees]),
+        spheres,
+        np.concatenate([tree.solid for tree in trees]),
+        solids,
+        planes,
+        balls,
+        np.array(problem.robot.primitives.kinds),
+    ), spans
 
 
 def without_edge(grid: PostureGrid, layer: int, path: IntArray) -> PostureGrid:
