@@ -39,6 +39,6 @@ def recomputed() -> list[RecomputedNumber]:
         RecomputedNumber(
             "yaw of the base, both arms moved", "rad", OWN, _YAW,
             float(to_angles(attitude)[0]), 1e-6, _SOURCE,
-            "quoted at second hand: no public copy of the source was found; sums over the bodies give it",
+            "quoted at second hand, no public copy was found; sums over the bodies give it",
         )
     ]  # fmt: skip

@@ -92,7 +92,7 @@ def recomputed() -> list[RecomputedNumber]:
         RecomputedNumber(
             "planar manipulator: det J* at (.7, 1.1) rad", "m^2", OWN,
             determinant_by_formula(*_TRIED), determinant(robot, *_TRIED), 1e-12, _SOURCE,
-            "the closed form was derived here, with the barycentric vectors that the article introduced",
+            "the closed form was derived here, with barycentric vectors as in the article",
         ),
         RecomputedNumber(
             "planar manipulator: singular q2 at q1 = -65 deg", "deg", OWN,
