@@ -1,4 +1,4 @@
-"""Schwarzer, Saha and Latombe's bound on the travel of a planar linkage on a base at rest.
+"""Bound on the travel of a planar linkage on a base at rest, as Schwarzer, Saha and Latombe need.
 
 No point of a chain travels farther than the sum over its joints of the rotation, times the farthest
 distance that a point behind the joint can have from it. For three links of length 1 this is
@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ffsr_plan.published_numbers.models.rigid_trees import Body, RigidTree
-from ffsr_plan.published_numbers.recomputed_number import FORMULA, RecomputedNumber
+from ffsr_plan.published_numbers.recomputed_number import OWN, RecomputedNumber
 
 CHANGE = np.array([0.3, 0.2, 0.4])
 """(3,) change of the joint values over the edge, all in one direction [rad]."""
@@ -19,7 +19,9 @@ _SOURCE = (
     "F. Schwarzer, M. Saha, J.-C. Latombe (2005). Adaptive dynamic collision checking for single "
     "and multiple articulated robots in complex environments. IEEE Trans. Robotics 21(3)"
 )
-_DIFFERS = "the linkage is ours: no copy of the article was at hand to take its example from"
+_DIFFERS = (
+    "linkage and closed form are ours: no copy of the article was found to take its example from"
+)
 
 
 def linkage() -> RigidTree:
@@ -48,6 +50,6 @@ def recomputed() -> list[RecomputedNumber]:
     found = float(travel.points["speed"].max())
     expected = float(np.array([3.0, 2.0, 1.0]) @ np.abs(CHANGE))
     return [
-        RecomputedNumber("travel bound of a linkage's tip, 3 links of 1 m", "m", FORMULA, expected,
+        RecomputedNumber("travel bound of a linkage's tip, 3 links of 1 m", "m", OWN, expected,
                          found, 1e-9, _SOURCE, _DIFFERS)
     ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Papadopoulos and Dubowsky's planar manipulator: the determinant of J* in closed form.
+"""A planar manipulator as Papadopoulos and Dubowsky's: the determinant of J* in closed form.
 
 A base and two links in a plane. With the barycentric vectors a, b, c of base and links, and D_k
 the rows of the inertia matrix of the absolute rotations, summed,
@@ -14,20 +14,23 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.published_numbers.models.rigid_trees import Body, RigidTree
-from ffsr_plan.published_numbers.recomputed_number import FORMULA, PUBLISHED, RecomputedNumber
+from ffsr_plan.published_numbers.recomputed_number import FORMULA, OWN, RecomputedNumber
 from ffsr_plan.robots.robot import SpaceRobot
 
 _MASSES = (40.0, 4.0, 3.0)  # base, links [kg]
 _INERTIAS = (6.667, 0.333, 0.25)  # about their centres, in the plane [kg m^2]
 _HALF = 0.5  # from the centre of each body to its joints, and to the end effector [m]
-SINGULAR = (-65.0, -11.41)
-"""Joint values of a dynamic singularity [deg]."""
+SINGULAR_FIRST = -65.0
+"""Value of the first joint at which a singular value of the second is looked for [deg]."""
 _TRIED = (0.7, 1.1)  # [rad] joint values at which the determinants are compared
 _SOURCE = (
     "E. Papadopoulos, S. Dubowsky (1993). Dynamic singularities in free-floating space "
     "manipulators. J. Dynamic Systems, Measurement, and Control 115"
 )
-_UNCHECKED = "parameters and angles were not checked against a copy of the article"
+_UNCHECKED = (
+    "no copy of the article was found: its parameters and the angles -65 and -11.41 deg are quoted "
+    "at second hand, and the root of the closed form is expected"
+)
 
 
 def planar_manipulator() -> RigidTree:
@@ -80,23 +83,24 @@ def recomputed() -> list[RecomputedNumber]:
     from ffsr_plan.dynamics.dynamic_singularity import least_singular_value
 
     robot = planar_manipulator().robot()
-    first = np.radians(SINGULAR[0])
-    found = brentq(lambda second: determinant(robot, first, second), -0.5, 0.0)
+    first = np.radians(SINGULAR_FIRST)
+    expected = brentq(lambda second: determinant_by_formula(first, second), -0.5, 0.0, xtol=1e-13)
+    found = brentq(lambda second: determinant(robot, first, second), -0.5, 0.0, xtol=1e-13)
     at = _configuration(robot, first, found)
     least = least_singular_value(robot, at, "end_effector", attitude=False)
     return [
         RecomputedNumber(
-            "planar manipulator: det J* at (.7, 1.1) rad", "m^2", FORMULA,
+            "planar manipulator: det J* at (.7, 1.1) rad", "m^2", OWN,
             determinant_by_formula(*_TRIED), determinant(robot, *_TRIED), 1e-12, _SOURCE,
-            "the closed form was derived again here, with the barycentric vectors of the article",
+            "the closed form was derived here, with barycentric vectors as in the article",
         ),
         RecomputedNumber(
-            "planar manipulator: singular q2 at q1 = -65 deg", "deg", PUBLISHED, SINGULAR[1],
-            float(np.degrees(found)), 5e-3, _SOURCE, _UNCHECKED,
+            "planar manipulator: singular q2 at q1 = -65 deg", "deg", OWN,
+            float(np.degrees(expected)), float(np.degrees(found)), 1e-6, _SOURCE, _UNCHECKED,
         ),
         RecomputedNumber(
             "planar manipulator: least singular value there", "m", FORMULA, 0.0, least, 1e-9,
-            _SOURCE, "at the angle computed here, not at the rounded one",
+            _SOURCE, "the article's condition det J* = 0",
         ),
     ]  # fmt: skip
 
