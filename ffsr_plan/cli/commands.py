@@ -362,18 +362,10 @@ def robots() -> None:
 def literature(quiet: Quiet = False, as_json: Json = False) -> None:
     """Recompute numbers from publications; exit status 1 if one is off its tolerance."""
     with errors_on_stderr():
-        from dataclasses import asdict
-
         from ffsr_plan.cli.output import Output
-        from ffsr_plan.cli.printed_tables import literature_table, sources_text
-        from ffsr_plan.published_numbers.literature import literature as recomputed
+        from ffsr_plan.cli.printed_tables import show_numbers
 
-        output, numbers = Output(quiet, as_json), recomputed()
-        output.show(
-            lambda: (literature_table(numbers), sources_text(numbers)),
-            lambda: {"numbers": [asdict(each) | {"ok": each.ok} for each in numbers]},
-        )
-        if not all(each.ok for each in numbers):
+        if not show_numbers(Output(quiet, as_json)):
             raise typer.Exit(1)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ from ffsr_plan.plans.plan_summary import plan_rows
 
 if TYPE_CHECKING:
     from ffsr_plan.cli.flight_figures import FlightFigures
+    from ffsr_plan.cli.output import Output
     from ffsr_plan.cli.step_times import StepTimes
     from ffsr_plan.plans.plan_data import PlanData
     from ffsr_plan.published_numbers.recomputed_number import RecomputedNumber
@@ -78,6 +80,18 @@ def robot_table(robots: Iterable[RobotSummary]) -> Table:
             "\n".join(robot.joint_names),
         )
     return table
+
+
+def show_numbers(output: Output) -> bool:
+    """Print numbers from publications beside those computed here; whether all agree."""
+    from ffsr_plan.published_numbers.literature import literature
+
+    numbers = literature()
+    output.show(
+        lambda: (literature_table(numbers), sources_text(numbers)),
+        lambda: {"numbers": [asdict(each) | {"ok": each.ok} for each in numbers]},
+    )
+    return all(each.ok for each in numbers)
 
 
 def literature_table(numbers: Iterable[RecomputedNumber]) -> Table:

@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ffsr_plan.bodies.debris.debris_cloud import DebrisCloud
-from ffsr_plan.bodies.debris.drifting_tree import DriftingTree
-from ffsr_plan.bodies.debris.scene_debris import spheres_at, tree_of
+from ffsr_plan.bodies.debris.scene_debris import spheres_at
 from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.core.arrays import Array, content
 from ffsr_plan.core.checks import number, text
@@ -283,13 +282,6 @@ class Scene:
     def moving(self) -> tuple[MovingBody | DebrisCloud, ...]:
         """The obstacles that move."""
         return self.bodies + self.debris
-
-    def debris_tree(self, middle: float) -> DriftingTree:
-        """The spheres of all clouds as one tree, grown like all others.
-
-        A search in it is fastest about the time `middle` [s].
-        """
-        return tree_of(self.debris, self.growth, middle)
 
     @cached_property
     def body_scenes(self) -> tuple[Scene, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ffsr_plan.bodies.debris.scene_debris import tree_of
 from ffsr_plan.collision.coal_measures import CoalMeasures
 from ffsr_plan.collision.distances import Nearest
 from ffsr_plan.collision.shape_placements import Placements
@@ -37,7 +38,7 @@ class DebrisDistances:
             middle: the time about which distances are fastest to find [s].
             deadline: after which measurements raise `OutOfTime`.
         """
-        self._tree = scene.debris_tree(middle)
+        self._tree = tree_of(scene.debris, scene.growth, middle)
         self._shapes, self._deadline = robot.primitives, deadline or Deadline()
         self._links = [robot.link_of(shape) for shape in robot.collision_model.geometryObjects]
         self._first = len(scene) - len(self._tree.order)

@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.display.scenes.picture_data import MotionFrames
-from ffsr_plan.display.scenes.shown_problem import ShownProblem
+from ffsr_plan.display.scenes.shown_space import ShownProblem
 from ffsr_plan.lattice.layered_lattice import path_frame
 from ffsr_plan.robots.robot import SpaceRobot
 
