@@ -17,7 +17,7 @@ from ffsr_plan.display.scenes.picture_data import (
     drawn_solid,
     trail_segments,
 )
-from ffsr_plan.display.scenes.projection import view_axes
+from ffsr_plan.display.scenes.projection import ShownProblem, view_axes
 from ffsr_plan.display.scenes.scene_objects import (
     TIPS,
     TRACK,
@@ -31,7 +31,7 @@ from ffsr_plan.display.scenes.scene_objects import (
     set_up,
 )
 from ffsr_plan.display.scenes.shape_outlines import labels
-from ffsr_plan.display.scenes.shown_space import ShownProblem, shown_space
+from ffsr_plan.display.scenes.shown_space import shown_space
 from ffsr_plan.display.scenes.timed_clearances import nearest_passes
 from ffsr_plan.display.scenes.zone_outlines import name_places
 from ffsr_plan.display.web.html_template import html_page

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import coal
 import numpy as np
@@ -11,9 +11,9 @@ import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.display.scenes.picture_data import MotionFrames
-from ffsr_plan.display.scenes.shown_space import ShownProblem
 from ffsr_plan.lattice.layered_lattice import path_frame
 from ffsr_plan.robots.robot import SpaceRobot
+from ffsr_plan.scene.scene import Scene
 
 STILL = 1e-9  # distance [m] of start and goal below which the base stays on the spot
 VIEWS = {"path": (0, 1, 2), "side": (0, 2, 1)}
@@ -22,6 +22,26 @@ SHAPES = ("visual", "collision")
 _LEAST_RADIUS = 0.02  # of drawn spheres and capsules [m], so that points are visible
 _CIRCLE = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
 _RING = np.column_stack([np.cos(_CIRCLE), np.sin(_CIRCLE)])
+
+
+class ShownProblem(Protocol):
+    """A robot among obstacles: a problem, or any motion that a page plays."""
+
+    @property
+    def robot(self) -> SpaceRobot:
+        """The robot."""
+
+    @property
+    def scene(self) -> Scene:
+        """The obstacles as they are."""
+
+    @property
+    def obstacles(self) -> Scene:
+        """The obstacles as clearances count from them."""
+
+    @property
+    def base_displacement(self) -> Array:
+        """(3,) from the base's start to its end, world axes [m]; zero where it floats."""
 
 
 class Outline(NamedTuple):

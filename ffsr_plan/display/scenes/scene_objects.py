@@ -21,9 +21,9 @@ from ffsr_plan.display.scenes.meshcat_objects import (
     solids,
     triangle_mesh,
 )
-from ffsr_plan.display.scenes.projection import view_axes, visible_shapes
+from ffsr_plan.display.scenes.projection import ShownProblem, view_axes, visible_shapes
 from ffsr_plan.display.scenes.shape_outlines import ROUND, joined, mesh_of
-from ffsr_plan.display.scenes.shown_space import ShownProblem, farthest_shown, shown_space
+from ffsr_plan.display.scenes.shown_space import farthest_shown, shown_space
 from ffsr_plan.display.scenes.zone_outlines import dashed, lines_of, sides_of
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene

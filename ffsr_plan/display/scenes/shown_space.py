@@ -1,41 +1,19 @@
-"""What pictures show: a problem, and of the world around it the motion and what is near."""
+"""The part of the world that a picture in three dimensions shows: the motion and what is near."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.display.scenes.body_tracks import BodyTrack, points_near
-from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.scene.shapes.extents import extents
 from ffsr_plan.scene.shapes.keep_in_zones import HalfSpace
 
 _ROOM = 0.5  # extents of the motion that are shown of obstacles which reach far beyond it
 _NEARBY = 10.0  # [m] from the motion, or an extent of it, in which obstacles are shown as a whole
-
-
-class ShownProblem(Protocol):
-    """A robot among obstacles: a problem, or any motion that a page plays."""
-
-    @property
-    def robot(self) -> SpaceRobot:
-        """The robot."""
-
-    @property
-    def scene(self) -> Scene:
-        """The obstacles as they are."""
-
-    @property
-    def obstacles(self) -> Scene:
-        """The obstacles as clearances count from them."""
-
-    @property
-    def base_displacement(self) -> Array:
-        """(3,) from the base's start to its end, world axes [m]; zero where it floats."""
 
 
 def shown_space(
