@@ -180,7 +180,8 @@ def test_many_shapes_give_the_least_of_all_pairs():
 
     def each(obstacles):
         distances = SampledDistances(robot, obstacles, np.zeros(3))
-        distances.stretches(stretch, distances.middles(samples), np.zeros((count, parts)))
+        middles = distances.middles(samples)
+        distances.stretches(stretch, np.zeros(count), middles, np.zeros((count, parts)))
         return distances.at(samples, which, part, stretch[which], np.zeros(len(which)))
 
     least = np.min([each(single) for single in singles], axis=0)
