@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import ffsr_plan.display.figure_style as figure_style
 from ffsr_plan.core.checks import one_of, whole_number
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.text_files import write_files
-from ffsr_plan.display import figure_style
 from ffsr_plan.display.body_drawing import chosen_rows, draw_bodies, draw_debris, write_times
 from ffsr_plan.display.figure_style import Named, Style, axes_or_new, figure_bytes, fit_height
 from ffsr_plan.display.path_drawing import (

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import ffsr_plan.display.movie_frames as style
 from ffsr_plan.core.checks import one_of, whole_number
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.formatting import proven
 from ffsr_plan.core.rotations import angle_between
-from ffsr_plan.display import movie_frames as style
 from ffsr_plan.display.movie_files import write_movie
 from ffsr_plan.display.movie_frames import (
     ASPECTS,

@@ -8,14 +8,12 @@ from pathlib import Path
 from ffsr_plan.core.checks import one_of, unknown_name
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.formats import (
-    csv_trajectories,
-    mcap_trajectories,
-    mujoco_models,
-    numpy_trajectories,
-    ros_messages,
-)
+from ffsr_plan.formats.csv_trajectories import read_csv, write_csv
+from ffsr_plan.formats.mcap_trajectories import read_mcap, write_mcap
+from ffsr_plan.formats.mujoco_models import read_mjcf
+from ffsr_plan.formats.numpy_trajectories import read_numpy, write_numpy
 from ffsr_plan.formats.plan_trajectories import trajectory_of
+from ffsr_plan.formats.ros_messages import read_ros, trajectory_from, write_ros
 from ffsr_plan.formats.values.data_files import read_data
 from ffsr_plan.plans.plan_file import read as read_plan
 from ffsr_plan.trajectory.trajectory import INTERPOLATIONS, Trajectory
@@ -26,25 +24,25 @@ def _read_json(path: str | Path, interpolation: str | None) -> Trajectory:
     data = read_data("trajectory", path)
     if isinstance(data, dict) and {"format", "problem", "motion"} <= data.keys():
         return trajectory_of(read_plan(Path(path)))
-    return ros_messages.trajectory_from(f"file '{path}'", data, interpolation)
+    return trajectory_from(f"file '{path}'", data, interpolation)
 
 
 _READERS: dict[str, Callable[[str | Path, str | None], Trajectory]] = {
-    ".csv": csv_trajectories.read_csv,
-    ".npz": numpy_trajectories.read_numpy,
+    ".csv": read_csv,
+    ".npz": read_numpy,
     ".json": _read_json,
-    ".yaml": ros_messages.read_ros,
-    ".yml": ros_messages.read_ros,
-    ".mcap": mcap_trajectories.read_mcap,
-    ".xml": mujoco_models.read_mjcf,
+    ".yaml": read_ros,
+    ".yml": read_ros,
+    ".mcap": read_mcap,
+    ".xml": read_mjcf,
 }
 _WRITERS: dict[str, Callable[[str | Path, Trajectory], None]] = {
-    ".csv": csv_trajectories.write_csv,
-    ".npz": numpy_trajectories.write_numpy,
-    ".json": ros_messages.write_ros,
-    ".yaml": ros_messages.write_ros,
-    ".yml": ros_messages.write_ros,
-    ".mcap": mcap_trajectories.write_mcap,
+    ".csv": write_csv,
+    ".npz": write_numpy,
+    ".json": write_ros,
+    ".yaml": write_ros,
+    ".yml": write_ros,
+    ".mcap": write_mcap,
 }
 
 

@@ -90,7 +90,6 @@ class TimedRuns:
 
     Attributes:
         best: the best run, or None.
-        refused: number of paths without a run.
         closed_at: when the last path without a run was closed for good [s]; None before.
     """
 
@@ -104,7 +103,6 @@ class TimedRuns:
         """
         self._problem, self._steps, self._deadline = problem, steps, deadline
         self.best: TimedRun | None = None
-        self.refused = 0
         self.closed_at: float | None = None
         self._counts = Counts(0, 0, 0, 0)
         self._rows: list[tuple[float, float, float, float]] = []
@@ -198,7 +196,6 @@ class TimedRuns:
 
     def _refused(self, layer: int | None) -> float:
         """No run: the time is kept at which the path was closed."""
-        self.refused += 1
         pace = self._problem.pace(self._steps.number)
         if layer is not None and pace is not None:
             self.closed_at = float(pace.instants(np.array(float(layer))))

@@ -25,6 +25,7 @@ from ffsr_plan.tree_search.search_rounds import SearchRounds
 from ffsr_plan.tree_search.tree_settings import TreeSettings
 
 _FIRST_WORK = 60_000  # configurations checked for each of the first paths
+_LEAST_SHARE = 10  # of its work that a path counts for at least, so that the search ends
 _GIVING_WAY = 4  # of so many paths without a run, one is run with steps aside, which take long
 _PATHS = 6  # after so many, twice the work for each
 _ADVICE = (
@@ -135,8 +136,9 @@ class SearchInTime:
         shapes = list(problem.scene.shapes)
         for body, time in zip(bodies, times.tolist(), strict=True):
             shapes += self._apart(body, time) if number else ()
-        scene = replace(problem.scene, shapes=tuple(shapes), bodies=())
-        if scene.debris:
+        debris = problem.scene.debris if number else ()
+        scene = replace(problem.scene, shapes=tuple(shapes), bodies=(), debris=debris)
+        if debris:
             scene = scene.at(float(times[0]) if len(times) else duration * _share(number))
         return replace(problem, scene=scene, duration=None, ramp=0.0)
 
@@ -154,10 +156,11 @@ class SearchInTime:
         try:
             rounds = SearchRounds(still, self._settings, self._rng.spawn(1)[0], monitor)
         except (StartInCollision, GoalInCollision):  # beside bodies at rest there
-            self._checks += work
+            self._checks += max(work // _LEAST_SHARE, 1)
             return np.inf
         rounds.run(work, first)
-        self._checks += max(int(rounds.space.arrays.setup[0]["checks"]), work // 10)
+        self._checks += max(rounds.checks, work // _LEAST_SHARE, 1)
+        self._nodes += rounds.nodes
         found = rounds.proven.best
         if found is None:
             try:

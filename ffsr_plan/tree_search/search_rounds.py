@@ -92,8 +92,8 @@ class SearchRounds:
         if self._try_straight() or (first and self.proven.best is not None):
             return False
         size, number = _FIRST_ROUND, 0
-        while self._checks() < checks and not self._monitor.expired():
-            end = min(self._checks() + size, checks)
+        while self.checks < checks and not self._monitor.expired():
+            end = min(self.checks + size, checks)
             new = self._search(end, first)
             if first and self.proven.best is not None:
                 return False
@@ -123,8 +123,15 @@ class SearchRounds:
         """Edges of the trees of the last search, for pictures."""
         return self.proven.branches(self._restarts.trees)
 
-    def _checks(self) -> int:
+    @property
+    def checks(self) -> int:
+        """Configurations checked so far."""
         return int(self.space.arrays.setup[0]["checks"])
+
+    @property
+    def nodes(self) -> int:
+        """Nodes of all trees so far."""
+        return self._restarts.tally().nodes
 
     def _try_straight(self) -> bool:
         """Whether the straight way is proven free and no path can cost less."""
@@ -149,11 +156,11 @@ class SearchRounds:
         Returns:
             The least cost of a new path [m].
         """
-        least, part = np.inf, self._checks() + int(_SEARCHING * (end - self._checks()))
-        while self._checks() < (part if self._paths else end) and not self._monitor.expired():
+        least, part = np.inf, self.checks + int(_SEARCHING * (end - self.checks))
+        while self.checks < (part if self._paths else end) and not self._monitor.expired():
             limit = part if self._paths else end
             known = min((path.cost for path in self._paths), default=np.inf)
-            found = self._restarts.find(limit - self._checks(), self._monitor.expired, known)
+            found = self._restarts.find(limit - self.checks, self._monitor.expired, known)
             if found is None:
                 continue
             path = self._path(*found)
@@ -196,9 +203,9 @@ class SearchRounds:
 
     def _improve(self, until: int) -> None:
         """Improve all paths that are kept, then the best of them, and prove it."""
-        share = max((until - self._checks()) // (2 * len(self._paths)), 1)
+        share = max((until - self.checks) // (2 * len(self._paths)), 1)
         for path in self._paths:
-            self._work_on(path, self._checks() + share)
+            self._work_on(path, self.checks + share)
         self._paths.sort(key=lambda each: each.cost)
         self._work_on(self._paths[0], until)
         best = self._paths[0]
@@ -208,7 +215,7 @@ class SearchRounds:
     def _work_on(self, path: ImprovedPath, until: int) -> None:
         """Improve one path until so many configurations have been checked."""
         stop = self._monitor.expired
-        while (left := until - self._checks()) > 0 and not stop():
+        while (left := until - self.checks) > 0 and not stop():
             if self.space.problem.reach_attitude:
                 path.straighten(self._random, max(2 * left // 3, 1))
                 path.move(self._random, max(left // 6, 1))
@@ -247,7 +254,7 @@ class SearchRounds:
         objective = np.inf if best is None else best.objective
         self._monitor.on_cycle(
             TreeCycle(
-                number, rounds, objective, new / unit, self._checks(),
+                number, rounds, objective, new / unit, self.checks,
                 self._restarts.meetings.nodes, path, arrival,
                 self.branches(),
             )

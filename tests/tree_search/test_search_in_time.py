@@ -134,3 +134,25 @@ def test_a_portfolio_runs_trees_among_bodies_too():
     problem = fp.load_scenario("crossing")
     plan = fp.plan(problem, fp.Portfolio(trees=QUICK), refine=False)
     assert plan.verify().ok
+
+
+def test_trees_pass_drifting_debris(robot):
+    rng = np.random.default_rng(0)
+    centers = rng.uniform((1.0, -4.0, -0.5), (5.0, 4.0, 0.5), (15, 3))
+    cloud = fp.DebrisCloud(centers, np.full(15, 0.15), rng.normal(size=(15, 3)) * (0.02, 0.03, 0.0))
+    problem = fp.Problem(
+        robot, fp.Scene(debris=[cloud]), robot.neutral(), robot.configuration((6.0, 0.0, 0.0)),
+        duration=120.0, delta=0.05, clearance_cap=1.0,
+    )  # fmt: skip
+    rounds = []
+    plan = fp.plan(problem, QUICK, on_cycle=rounds.append)
+    assert 0.0 < plan.slip < np.inf
+    assert plan.verify().ok
+    times, still = np.linspace(0.0, 120.0, 81), plan.problem.scene.at
+    near = [
+        fp.clearance(robot, still(t), q) for t, q in zip(times, plan.configurations, strict=True)
+    ]
+    assert plan.clearances == pytest.approx(np.array(near), abs=1e-9)
+    assert plan.clearances.min() < 1.0
+    assert rounds[-1].nodes > 0
+    assert rounds[-1].best == plan.objective

@@ -56,7 +56,7 @@ def runs(draws, count, work, step=MILLISECOND):
         if not ends_are_free(problem):
             continue
         done += 1
-        obstacles, free = Obstacles(problem.scene, problem.duration, step), problem
+        obstacles = Obstacles(problem.scene, problem.duration, step)
         free = replace(problem, lattice=None)
         found = {
             FIRST: flown(free, obstacles, fp.TreePlanner(checks=work), until="first"),

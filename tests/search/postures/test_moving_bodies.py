@@ -7,7 +7,6 @@ import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.collision.debris.distances_in_time import distances_in_time
-from ffsr_plan.problem.objective import nearness
 from ffsr_plan.search.postures.cost_kernels import CostedPath, path_cost
 from ffsr_plan.search.postures.lower_bound import lower_bound
 from ffsr_plan.search.postures.path_proof import corners, prove_path
@@ -92,4 +91,3 @@ def test_the_lower_bound_counts_bodies_where_they_are():
     assert np.linalg.norm(problem.scene.at(50.0).shapes[0].position - middle) < 1e-9
     passed = replace(problem, scene=problem.scene.at(0.0), duration=None)
     assert lower_bound(lattice) > lower_bound(PostureLattice(passed, Deadline()))
-    assert nearness(problem, np.array([0.1])) > 0.0
