@@ -40,12 +40,10 @@ def test_bodies_that_move_need_a_duration_that_their_motions_know():
         replace(problem, scene=fp.Scene(), **changed | {"ramp": 0.1})
 
 
-def test_nothing_measures_a_scene_whose_bodies_have_no_time():
+def test_a_clearance_needs_the_time_of_the_bodies():
     problem = small_problem(0)
     with pytest.raises(InvalidInput, match="scene bodies"):
         fp.clearance(problem.robot, problem.scene, problem.start)
-    with pytest.raises(InvalidInput, match="scene bodies"):
-        fp.plan(replace(problem, lattice=None))
 
 
 def test_a_start_that_a_body_touches_is_named():
