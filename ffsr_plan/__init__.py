@@ -105,6 +105,7 @@ if TYPE_CHECKING:
         Trails,
         TreeCycle,
     )
+    from ffsr_plan.timed_proof.unproven_flight import UnprovenFlight
     from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.flights.verify_flight import FlightReport
     from ffsr_plan.verification.verify import Report
@@ -201,6 +202,7 @@ __all__ = [
     "Tumble",
     "UncheckedLinks",
     "UnprovenCurve",
+    "UnprovenFlight",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",
@@ -255,6 +257,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "WideTurns",
         "WorkerDied",
     ),
+    "timed_proof.unproven_flight": ("UnprovenFlight",),
     "curves.curved_motion": ("CurvedMotion",),
     "curves.smooth_curve": ("CurvePoints", "SmoothCurve"),
     "display.live.live_view": ("LiveView",),

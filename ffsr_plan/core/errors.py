@@ -270,19 +270,22 @@ class UnprovenCurve(PlanningError):
         edge: the first edge of the path that was refused, from 1 on.
         edges: their number.
         contact: the nearest pair in its middle; its depth is negative apart.
+        time: when the path is there [s]; None without bodies that move.
     """
 
     edge: int
     edges: int
     contact: Contact
+    time: float | None = None
 
     def message(self) -> str:
         """Where the proof fails, and what may help."""
         link, obstacle, depth, source = self.contact
         return (
             f"no smooth curve could be proven free: on edge {self.edge} of {self.edges}, link "
-            f"'{link}' {encounter(-depth, obstacle, source)}; what may help: a plan "
-            "with more clearance, by min_clearance or a larger delta"
+            f"'{link}' {encounter(-depth, obstacle, source)}"
+            + ("" if self.time is None else f" at {self.time:.4g} s")
+            + "; what may help: a plan with more clearance, by min_clearance or a larger delta"
         )
 
 

@@ -40,11 +40,14 @@ class Plan(Timing, PlanData):
     ) -> SmoothFlight | TimedPlan:
         from ffsr_plan.planning.flights import smooth_flight, timed_plan
         from ffsr_plan.planning.met_plan import met_plan
+        from ffsr_plan.planning.smooth_plan import flown_past_bodies
 
-        refuse_another_pace("timed", self.problem)
         if meeting is not None:
+            refuse_another_pace("timed with a meeting", self.problem)
             return met_plan(self, limits, corners, duration, meeting)
         if one_of("corners", corners, ("smooth", "rest")) == "smooth":
+            if self.problem.scene.bodies:
+                return flown_past_bodies(self, limits, duration)
             return smooth_flight(self.smooth(), limits, duration)
         if duration is not None:
             raise InvalidInput("duration", duration, "None with corners='rest'")
@@ -55,15 +58,14 @@ class Plan(Timing, PlanData):
 
         The nodes become control points of a cubic spline. Where it comes too close to something,
         more control points are taken, or in the last resort the plan's own path with rests; `kind`
-        of the result tells which.
+        of the result tells which. Past bodies that move it is proven for the times of the plan: the
+        curve is where it belongs to a node when the plan is there.
 
         Raises:
-            InvalidInput: bodies of the scene move: the plan is proven at its own pace alone.
             UnprovenCurve: nothing could be proven, not even the plan's path with rests.
         """
         from ffsr_plan.planning.smooth_plan import smoothed
 
-        refuse_another_pace("smooth", self.problem)
         return smoothed(self)
 
     def least_fuel(self, margin: float = 0.0) -> SmoothPlan:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ffsr_plan.bodies.body_motion import Drift, Spin
 from ffsr_plan.bodies.moving_body import MovingBody
-from ffsr_plan.bodies.pace import Pace
+from ffsr_plan.bodies.pace import Timetable
 from ffsr_plan.bodies.tumble import Tumble
 from ffsr_plan.collision.body_distances import in_axes
 from ffsr_plan.collision.distances import ObstacleQuery
@@ -41,7 +41,7 @@ class BodyEdge:
         layer: int,
         offsets: tuple[Array, Array],
         base_step: Array,
-        pace: Pace,
+        pace: Timetable,
         rounding: float,
         slot: int | None = None,
     ) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ffsr_plan.bodies.pace import Pace
+from ffsr_plan.bodies.pace import Timetable
 from ffsr_plan.collision.body_distances import BodyDistances, in_axes
 from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery
@@ -41,7 +41,7 @@ class MovingObstacles:
         self,
         motion: Motion | CurvedMotion,
         scene: Scene,
-        pace: Pace,
+        pace: Timetable,
         travel: EdgeTravel,
         placements: NominalPlacements,
         corners: Placements,

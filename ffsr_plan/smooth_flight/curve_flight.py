@@ -156,8 +156,24 @@ def curve_flight(
     Raises:
         InvalidInput: see `pace_within`.
     """
-    pace, strength = pace_within(curve, limits, duration, ends), float(limits.acceleration[0])
-    straight = _straight_delta_v(curve, pace.duration, strength)
+    return flight_at(curve, limits, pace_within(curve, limits, duration, ends), ends)
+
+
+def flight_at(
+    curve: Curve,
+    limits: FlightLimits,
+    pace: Pace,
+    ends: EndSpeeds = EndSpeeds(),  # noqa: B008 - it is immutable
+) -> CurveFlight:
+    """A curve flown at a pace that keeps the limits.
+
+    Args:
+        curve: the curve.
+        limits: the limits.
+        pace: the pace.
+        ends: s' at both ends [1/s].
+    """
+    straight = _straight_delta_v(curve, pace.duration, float(limits.acceleration[0]))
     if ends != EndSpeeds():
         straight = _delta_v_of_two_pulses(curve, pace)
     return CurveFlight(

@@ -51,6 +51,11 @@ class Pace(NamedTuple):
         """The law with all durations multiplied by a factor."""
         return Pace(self.times * factor, self.begin / factor ** np.arange(4))
 
+    def after(self, wait: float) -> Pace:
+        """The law after a wait at its start [s], a piece of its own."""
+        first = [[self.begin[0, 0], 0.0, 0.0, 0.0]]
+        return Pace(np.append(0.0, self.times + wait), np.vstack([first, self.begin]))
+
     def ending_at(self, time: float) -> Pace:
         """The same law with its last time [s] to the last digit; it differs by rounding alone."""
         return self._replace(times=np.append(self.times[:-1], time))

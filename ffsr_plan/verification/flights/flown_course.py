@@ -39,7 +39,8 @@ class FlownCourse:
         still = np.zeros(self.edges)
         self.base_speeds: Array = still if mode.floats else used.base_speeds * lengths
         self.held_turns = None if mode.attitude_reacts else used.turn_speeds * lengths
-        self.moving = SceneBodies((), np.zeros(3), flight.duration)
+        moving = self.problem.scene.bodies
+        self.moving = SceneBodies(moving, self.problem.start[:3], flight.duration)
 
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on pieces (N,)."""

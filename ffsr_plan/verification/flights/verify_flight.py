@@ -20,7 +20,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.flights.flight_ends import flight_ends
 from ffsr_plan.verification.flights.flown import Flown
 from ffsr_plan.verification.flights.flown_course import FlownCourse
@@ -30,7 +29,13 @@ from ffsr_plan.verification.flights.used_limits import PER_PIECE, UsedLimits, us
 from ffsr_plan.verification.recomputed_objective import AGREEMENT
 from ffsr_plan.verification.sweep import CONFIRMED, Swept, sweep
 from ffsr_plan.verification.urdf_reading import Bodies
-from ffsr_plan.verification.verify import collisions, other_motion, shapes_not_checked
+from ffsr_plan.verification.verify import (
+    collisions,
+    functions_not_checked,
+    other_bodies,
+    other_motion,
+    shapes_not_checked,
+)
 
 MOTION_LIMIT = 1e-5
 """Allowed difference of base and joints from their integrals [rad] and [m]."""
@@ -102,11 +107,9 @@ def verify_flight(flight: Flown, clearance: float) -> FlightReport:
         The measured values, the problems found, and what was not checked.
 
     Raises:
-        InvalidInput: bodies of the scene move; flights past them are not made.
+        InvalidInput: a function of a body's motion tells no pose.
+        IntegrationError: a tumble of a body that cannot be integrated accurately.
     """
-    if flight.problem.scene.bodies:
-        allowed = "a scene at rest for a flight; a plan past bodies that move verifies by itself"
-        raise InvalidInput("scene bodies", list(flight.problem.scene.bodies), allowed)
     robot = flight.problem.robot
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
     used = used_limits(flight)
@@ -119,8 +122,9 @@ def verify_flight(flight: Flown, clearance: float) -> FlightReport:
         *_exceeded(used),
         *flight_ends(flight, steps.inner.velocities, RELATIVE_LIMIT),
         *_pulses(flight, swept),
-        *collisions(clearance, swept, "flight", "piece"),
+        *collisions(clearance, swept, "flight", "piece", timed=bool(flight.problem.scene.bodies)),
         *other_motion(swept),
+        *other_bodies(flight.problem, swept),
     )
     figures = (*motion, *forces)
     if not swept.finite or not np.all(np.isfinite(figures)):
@@ -190,6 +194,7 @@ def _not_checked(flight: Flown, bodies: Bodies) -> Iterator[str]:
     yield f"limits, and rates that bound the travel, between {PER_PIECE} instants of each piece"
     if flight.problem.scene.excess > 0.0:
         yield "that the spheres cover what they stand for, and by how much they exceed it"
+    yield from functions_not_checked(flight.problem)
     yield from shapes_not_checked(flight.problem.robot, bodies)
 
 
