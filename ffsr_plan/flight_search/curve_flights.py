@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-import numpy as np
-
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import UnprovenCurve
 from ffsr_plan.curves.curved_motion import CurvedMotion
@@ -26,7 +24,6 @@ from ffsr_plan.smoothing.proven_curve import Kind, ProvenCurve, proven_curve
 from ffsr_plan.timed_proof.flown_proof import FlownProof, Refusal, prove_waiting
 from ffsr_plan.timed_proof.unproven_flight import UnprovenFlight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
-from ffsr_plan.trajectory.timetables import LawTimes
 
 
 class FlownCurve(NamedTuple):
@@ -73,7 +70,6 @@ class _Search:
         """The proof of the first flight along a curve that is proven, or of the last one tried."""
         smooth, proof = SmoothCurve(curve), None
         fastest = pace_within(smooth, self._limits)
-        corners = np.arange(curve.edges + 1.0)
         for wait, duration in flight_times(self._problem, fastest.duration, self._given):
             waiting = self._waiting(wait, tolerance)
             if waiting.refusal is not None and proof is not None:
@@ -82,7 +78,7 @@ class _Search:
             if wait == 0.0 and duration > fastest.duration:
                 pace = pace_within(smooth, self._limits, duration)
             self.pace = pace = pace.after(wait) if wait > 0.0 else pace
-            times = LawTimes(pace.times, pace.begin, corners)
+            times = pace.timetable(curve.edges)
             if proof is None:
                 proof = prove_curve(self._problem, curve, tolerance, times)
             else:

@@ -43,7 +43,6 @@ class Plan(Timing, PlanData):
         from ffsr_plan.planning.smooth_plan import flown_past_bodies
 
         if meeting is not None:
-            refuse_another_pace("timed with a meeting", self.problem)
             return met_plan(self, limits, corners, duration, meeting)
         if one_of("corners", corners, ("smooth", "rest")) == "smooth":
             if self.problem.scene.bodies:

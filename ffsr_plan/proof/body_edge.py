@@ -16,10 +16,10 @@ from ffsr_plan.bodies.body_motion import Drift, Spin
 from ffsr_plan.bodies.moving_body import MovingBody
 from ffsr_plan.bodies.pace import Timetable
 from ffsr_plan.bodies.tumble import Tumble
-from ffsr_plan.collision.body_distances import in_axes
+from ffsr_plan.collision.body_distances import in_axes, moved_aside
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
-from ffsr_plan.core.arrays import Array
+from ffsr_plan.core.arrays import Array, Flags
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.motion_edges import NominalPlacements
 
@@ -44,6 +44,7 @@ class BodyEdge:
         pace: Timetable,
         rounding: float,
         slot: int | None = None,
+        aside: Flags | None = None,
     ) -> None:
         """An edge whose ends are displaced from the nominal motion.
 
@@ -58,8 +59,9 @@ class BodyEdge:
             pace: at which edges follow one another.
             rounding: length added to every travel bound [m].
             slot: the edge of the pace whose time the edge takes; by default that of its number.
+            aside: (g,) shapes that may touch the body; None for none.
         """
-        self._slot = layer if slot is None else slot
+        self._slot, self._aside = layer if slot is None else slot, aside
         self._body, self._query, self._placements = body, query, placements
         self._travel, self._layer, self._offsets, self._pace = travel, layer, offsets, pace
         self._parts: dict[float, Array] = {}
@@ -104,5 +106,7 @@ class BodyEdge:
         tail, head = self._offsets
         frames = self._placements.at(time).frames[self._layer : self._layer + 1]
         shift = (1.0 - time) * tail + time * head
-        poses = self._body.poses([self.instant(time)])
-        return in_axes(Placements(frames), poses, shift[None])
+        poses, placed = self._body.poses([self.instant(time)]), Placements(frames)
+        if self._aside is not None:
+            placed = moved_aside(placed, np.ones(1, dtype=np.bool_), self._aside)
+        return in_axes(placed, poses, shift[None])

@@ -7,14 +7,16 @@ clearance by x at most.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ffsr_plan.bodies.pace import Timetable
-from ffsr_plan.collision.body_distances import BodyDistances, in_axes
+from ffsr_plan.collision.body_distances import BodyDistances, in_axes, moved_aside
 from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
-from ffsr_plan.core.arrays import Array, IntArray, frozen
+from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.body_edge import BodyEdge
@@ -26,6 +28,20 @@ from ffsr_plan.time_limit.deadline import Deadline
 
 POSE_ERROR = 1e-9
 """Of a body's attitude [rad] and of its place [m]."""
+
+
+class Touching(NamedTuple):
+    """Shapes that may touch one body, at the end of a motion.
+
+    Attributes:
+        body: number of the body.
+        shapes: (g,) the shapes.
+        edge: from which edge on; before it, and at its begin, they may not.
+    """
+
+    body: int
+    shapes: Flags
+    edge: int
 
 
 class MovingObstacles:
@@ -47,6 +63,7 @@ class MovingObstacles:
         corners: Placements,
         rounding: float,
         deadline: Deadline,
+        touching: Touching | None = None,
     ) -> None:
         """Prepare the measurements.
 
@@ -59,7 +76,9 @@ class MovingObstacles:
             corners: placements at its layers.
             rounding: length added to every travel bound [m].
             deadline: after which measurements raise `OutOfTime`.
+            touching: shapes that may touch a body, at layers and along edges; None for none.
         """
+        self._touching = touching
         self._bodies, self._pace, self._deadline = scene.bodies, pace, deadline
         self._edges, self._steps = motion.edges, motion.base_steps()
         self._travel, self._placements, self._corners = travel, placements, corners
@@ -169,8 +188,11 @@ class MovingObstacles:
         instant = self._pace.instants(np.array([layer + time]))
         pairs = []
         for b, query in enumerate(self._queries):
-            poses = self._bodies[b].poses(instant)
-            seen = in_axes(Placements(frames), poses, shift[None])
+            poses, placed = self._bodies[b].poses(instant), Placements(frames)
+            inside = layer > 0 and time == 0.0  # a layer, which the edge before it ends at
+            if (aside := self._aside(b, layer - inside)) is not None:
+                placed = moved_aside(placed, np.ones(1, dtype=np.bool_), aside)
+            seen = in_axes(placed, poses, shift[None])
             pairs.append(query.nearest_at(seen, 0, np.zeros(3))._replace(obstacle=self._first + b))
         return min(pairs, key=lambda pair: pair.distance)
 
@@ -179,8 +201,15 @@ class MovingObstacles:
         step = self._steps[layer] + head - tail
         return BodyEdge(
             self._bodies[b], self._queries[b], self._placements, self._travel, layer, (tail, head),
-            step, self._pace, self._roundings[b],
+            step, self._pace, self._roundings[b], aside=self._aside(b, layer),
         )  # fmt: skip
+
+    def _aside(self, b: int, edge: int) -> Flags | None:
+        """(g,) shapes that may touch a body on an edge; None for none."""
+        touching = self._touching
+        if touching is None or touching.body != b or edge < touching.edge:
+            return None
+        return touching.shapes
 
     def _body(self, b: int, parts: int) -> BodyDistances:
         """Distances to one body at the layers or at places inside edges."""
@@ -190,6 +219,9 @@ class MovingObstacles:
             if parts:
                 places = np.add.outer(odd_times(parts), places[:-1]).ravel()
                 placed = self._placements.between(parts)
+            elif self._touching is not None and self._touching.body == b:
+                after = places > self._touching.edge
+                placed = moved_aside(placed, after, self._touching.shapes)
             poses = self._bodies[b].poses(self._pace.instants(places))
             self._seen[b, parts] = BodyDistances(self._robot, self._queries[b], placed, poses)
         return self._seen[b, parts]

@@ -30,7 +30,7 @@ from ffsr_plan.proof.motion_edges import (
     ObstacleEdge,
     odd_times,
 )
-from ffsr_plan.proof.moving_obstacles import MovingObstacles, worse
+from ffsr_plan.proof.moving_obstacles import MovingObstacles, Touching, worse
 from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.proof.self_collision_proof import LinkProof
 from ffsr_plan.scene.scene import Scene
@@ -60,6 +60,7 @@ class Prover:
         tolerance: float,
         deadline: Deadline | None = None,
         pace: Timetable | None = None,
+        touching: Touching | None = None,
     ) -> None:
         """Prepare the proofs.
 
@@ -69,6 +70,7 @@ class Prover:
             tolerance: clearance below which an edge may be refused [m].
             deadline: after which distance queries, and so all proofs, raise `OutOfTime`.
             pace: at which the motion is run; without it no body may move.
+            touching: shapes that may touch a body that moves; None for none.
 
         Raises:
             InvalidInput: bodies move, and there is no pace.
@@ -86,16 +88,16 @@ class Prover:
         iterated = iteration_error(nominal.robot, self._fixed)
         self._exact = iterated == 0.0
         self._rounding = ROUNDING + self._travel.attitude_error + iterated
-        self._run_at(pace)
+        self._run_at(pace, touching)
 
-    def _run_at(self, pace: Timetable | None) -> None:
+    def _run_at(self, pace: Timetable | None, touching: Touching | None = None) -> None:
         """Prepare the proofs past bodies that move, at a pace."""
         self._pace, self.speeds, self.rounding = pace, self._own_speeds, self._rounding
         self._moving: MovingObstacles | None = None
         if pace is not None and self._scene.bodies:
             self._moving = MovingObstacles(
                 self._motion, self._scene, pace, self._travel, self._placements, self._corners,
-                ROUNDING + self._travel.attitude_error, self._deadline,
+                ROUNDING + self._travel.attitude_error, self._deadline, touching,
             )  # fmt: skip
             self.speeds = self.speeds + self._moving.travel
             self.rounding = max(self._rounding, self._moving.rounding)

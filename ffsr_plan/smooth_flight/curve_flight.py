@@ -22,6 +22,7 @@ from ffsr_plan.smooth_flight.timed_curve import SMALLEST_RATE, pace_within
 from ffsr_plan.trajectory.flight import Flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 from ffsr_plan.trajectory.straight_flight import change_of_place, straight_delta_v
+from ffsr_plan.trajectory.timetables import LawTimes
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # on each piece of the law
 
@@ -114,6 +115,11 @@ class CurveFlight(Flight):
         """
         instants = self._instants(times)
         return _states(self.curve, self._pace, instants)
+
+    @property
+    def timetable(self) -> LawTimes:
+        """The times at the places of its curve, without waits."""
+        return self._pace.timetable(self.curve.pieces)
 
     def pulse_accelerations(self, times: ArrayLike) -> Array:
         """(N, 3) zeros at times (N,), as in `TimedPlan` between its pulses [m/s^2].

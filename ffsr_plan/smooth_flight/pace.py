@@ -8,6 +8,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.trajectory.cubic_pieces import evaluate
+from ffsr_plan.trajectory.timetables import LawTimes
 
 _HALVINGS = 60  # of a piece, to the last digit of a time
 
@@ -46,6 +47,10 @@ class Pace(NamedTuple):
             passed = self.on(piece, middle)[0] > s
             low, high = np.where(passed, low, middle), np.where(passed, middle, high)
         return low
+
+    def timetable(self, pieces: int) -> LawTimes:
+        """The times at the places of a curve of so many pieces, without waits."""
+        return LawTimes(self.times, self.begin, np.arange(pieces + 1.0))
 
     def slowed(self, factor: float) -> Pace:
         """The law with all durations multiplied by a factor."""

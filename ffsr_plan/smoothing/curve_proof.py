@@ -11,6 +11,7 @@ from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.proof.interval_halving import Verdict
+from ffsr_plan.proof.moving_obstacles import Touching
 from ffsr_plan.proof.prover import Prover
 from ffsr_plan.timed_proof.flown_proof import Refusal, first_refusal
 
@@ -61,7 +62,11 @@ class CurveProof(NamedTuple):
 
 
 def prove_curve(
-    problem: Problem, curve: CurvedMotion, tolerance: float, times: Timetable | None = None
+    problem: Problem,
+    curve: CurvedMotion,
+    tolerance: float,
+    times: Timetable | None = None,
+    touching: Touching | None = None,
 ) -> CurveProof:
     """Prove a curve free of obstacles and self-collision, and within the limits.
 
@@ -70,8 +75,9 @@ def prove_curve(
         curve: the curve.
         tolerance: clearance below which a piece may be refused [m].
         times: at which the curve is where; None where no body moves.
+        touching: shapes that may touch a body that moves; None for none.
     """
-    prover = Prover(curve, problem.obstacles, tolerance, pace=times)
+    prover = Prover(curve, problem.obstacles, tolerance, pace=times, touching=touching)
     return curve_proof(problem, curve, prover, times)
 
 

@@ -26,6 +26,7 @@ from ffsr_plan.verification.flights.flown_course import FlownCourse
 from ffsr_plan.verification.flights.force_balance import ForceErrors, force_errors
 from ffsr_plan.verification.flights.motion_integrals import MotionErrors, motion_errors, steps_of
 from ffsr_plan.verification.flights.used_limits import PER_PIECE, UsedLimits, used_limits
+from ffsr_plan.verification.motion_samples import MayTouch
 from ffsr_plan.verification.recomputed_objective import AGREEMENT
 from ffsr_plan.verification.sweep import CONFIRMED, Swept, sweep
 from ffsr_plan.verification.urdf_reading import Bodies
@@ -132,7 +133,7 @@ def verify_flight(flight: Flown, clearance: float) -> FlightReport:
     return FlightReport(
         not problems,
         problems,
-        tuple(_not_checked(flight, bodies)),
+        tuple(_not_checked(flight, bodies, course.touching)),
         *figures[:4],
         *forces,
         motion.delta_v,
@@ -189,11 +190,15 @@ def _pulses(flight: Flown, swept: Swept) -> Iterator[str]:
         yield "pulses do not add up to the changes of velocity that they stand for"
 
 
-def _not_checked(flight: Flown, bodies: Bodies) -> Iterator[str]:
+def _not_checked(flight: Flown, bodies: Bodies, touching: MayTouch | None) -> Iterator[str]:
     yield "that no flight within the limits is shorter, or calmer in the same time"
     yield f"limits, and rates that bound the travel, between {PER_PIECE} instants of each piece"
     if flight.problem.scene.excess > 0.0:
         yield "that the spheres cover what they stand for, and by how much they exceed it"
+    if touching is not None and flight.meeting is not None:
+        late, links = flight.duration - touching.since, ", ".join(touching.links)
+        target = f"'{flight.meeting.target}', which they may touch"
+        yield f"distances of {links} to moving body {target}, in the last {late:.3g} s"
     yield from functions_not_checked(flight.problem)
     yield from shapes_not_checked(flight.problem.robot, bodies)
 
