@@ -15,7 +15,7 @@ from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
-from ffsr_plan.planning.own_pace import refuse_another_pace
+from ffsr_plan.planning.scenes_at_rest import refuse_bodies
 from ffsr_plan.planning.timing import Timing
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
@@ -86,7 +86,7 @@ class Plan(Timing, PlanData):
         """
         from ffsr_plan.planning.smooth_plan import least_fuel
 
-        refuse_another_pace("least_fuel", self.problem)
+        refuse_bodies("least_fuel", self.problem)
         return least_fuel(self, margin)
 
     def verify(
