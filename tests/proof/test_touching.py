@@ -54,7 +54,10 @@ def test_contact_is_allowed_from_an_edge_on(motion):
     assert late == [True] * EDGES
     assert 0.0 < least <= clearances.min() + 1e-9
     everything = np.ones(len(arm), dtype=bool)
-    nearer = (1.2, 1.0, 0.0)  # touched on edge 2 and left again
-    assert verdicts(motion, Touching(0, everything, 3), nearer)[0][2] is False
+    middle = (1.37, 1.0, 0.0)  # touched in the middle of edge 2, and at none of its ends
+    free, clearances, _ = verdicts(motion, Touching(0, everything, 3), middle)
+    assert np.all(clearances > 0.0)
+    assert free == [True, True, False, True]
+    assert verdicts(motion, Touching(0, everything, 2), middle)[0] == [True] * EDGES
     others = np.ones(len(arm), dtype=bool) & ~arm
     assert verdicts(motion, Touching(0, others, 3))[0] == [True, True, True, False]
