@@ -113,6 +113,7 @@ if TYPE_CHECKING:
         Trails,
         TreeCycle,
     )
+    from ffsr_plan.timed_proof.unproven_flight import UnprovenFlight
     from ffsr_plan.trajectory.trajectory import Trajectory
     from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.flights.verify_flight import FlightReport
@@ -217,6 +218,7 @@ __all__ = [
     "Tumble",
     "UncheckedLinks",
     "UnprovenCurve",
+    "UnprovenFlight",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",
@@ -281,6 +283,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "WideTurns",
         "WorkerDied",
     ),
+    "timed_proof.unproven_flight": ("UnprovenFlight",),
     "curves.curved_motion": ("CurvedMotion",),
     "curves.smooth_curve": ("CurvePoints", "SmoothCurve"),
     "display.live.live_view": ("LiveView",),

@@ -19,8 +19,10 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.meetings.approach import Approach
 from ffsr_plan.meetings.arrival import Arrival
 from ffsr_plan.meetings.meeting import Meeting
+from ffsr_plan.meetings.met_body import touching_links
 from ffsr_plan.meetings.timed_approach import earliest, timed_approach
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.scene.scene import Scene
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.proven_curve import ProvenCurve
@@ -53,14 +55,19 @@ def meeting_flight(
         UnprovenCurve: a curve that meets on time could not be proven free.
     """
     _refuse_jerk(limits, motion)
-    arrival = Arrival(motion, meeting)
+    arrival, scene = Arrival(motion, meeting, problem.scene), problem.scene
+    _check_known(meeting, scene)
     refused: list[CurveProof] = []
     for window in _by_delta_v(arrival, limits):
         for factor in _FACTORS:
             found, flight = timed_approach(arrival, limits, meeting.at, window, factor)
             if found is None or flight is None:
                 break
-            proof = prove_curve(problem, found.curve, problem.tolerance)
+            times = flight.timetable if scene.moves else None
+            touching = None
+            if times is not None:
+                touching = touching_links(meeting, scene, found.curve, times)
+            proof = prove_curve(problem, found.curve, problem.tolerance, times, touching)
             if not len(proof.refused):
                 nodes = _nodes(arrival, window, proof.curve.edges)
                 return MeetingFlight(flight, _proven(proof, nodes, refused))
@@ -105,6 +112,13 @@ def _refuse_jerk(limits: FlightLimits, motion: Motion) -> None:
             raise InvalidInput(name, float(most), "no limit on jerk with a meeting")
 
 
+def _check_known(meeting: Meeting, scene: Scene) -> None:
+    """Raise `InvalidInput` for a meeting when the motion of a body is not known any more."""
+    if meeting.at > (known := scene.known_until):
+        allowed = f"at most {known:.6g} s, up to which the motions of all bodies are known"
+        raise InvalidInput("meeting.at", meeting.at, allowed)
+
+
 def _pose_not_met(arrival: Arrival) -> InvalidInput:
     meeting = arrival.meeting
     value = {"frame": meeting.frame, "position": np.round(arrival.pose.translation, 6).tolist()}
@@ -120,7 +134,7 @@ def _too_early(arrival: Arrival, limits: FlightLimits) -> InvalidInput:
     at = arrival.meeting.at
     least = earliest(arrival, limits, at)
     if least is None:
-        twist = [*arrival.meeting.velocity.tolist(), *arrival.meeting.angular_velocity.tolist()]
+        twist = arrival.twist.tolist()
         allowed = "a twist that the limits on thrust, torques and accelerations allow at some time"
         return InvalidInput("meeting.velocity, meeting.angular_velocity", twist, allowed)
     allowed = f"at least {_rounded_up(least)} s, about the earliest within these limits"
@@ -151,4 +165,6 @@ def _unproven(problem: Problem, motion: Motion, refused: list[CurveProof]) -> Ex
     )
     contact = named(problem.obstacles, min(pairs, key=lambda each: each.distance))
     edge = int(np.ceil((piece + 1.0) / proof.curve.edges * motion.edges))
+    if proof.refusal is not None:
+        return UnprovenCurve(edge, motion.edges, *proof.refusal)
     return UnprovenCurve(edge, motion.edges, contact)

@@ -15,7 +15,7 @@ from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
-from ffsr_plan.planning.own_pace import refuse_another_pace
+from ffsr_plan.planning.scenes_at_rest import refuse_bodies
 from ffsr_plan.planning.timing import Timing
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
@@ -40,11 +40,13 @@ class Plan(Timing, PlanData):
     ) -> SmoothFlight | TimedPlan:
         from ffsr_plan.planning.flights import smooth_flight, timed_plan
         from ffsr_plan.planning.met_plan import met_plan
+        from ffsr_plan.planning.smooth_plan import flown_past_bodies
 
-        refuse_another_pace("timed", self.problem)
         if meeting is not None:
             return met_plan(self, limits, corners, duration, meeting)
         if one_of("corners", corners, ("smooth", "rest")) == "smooth":
+            if self.problem.scene.moves:
+                return flown_past_bodies(self, limits, duration)
             return smooth_flight(self.smooth(), limits, duration)
         if duration is not None:
             raise InvalidInput("duration", duration, "None with corners='rest'")
@@ -55,15 +57,14 @@ class Plan(Timing, PlanData):
 
         The nodes become control points of a cubic spline. Where it comes too close to something,
         more control points are taken, or in the last resort the plan's own path with rests; `kind`
-        of the result tells which.
+        of the result tells which. Past bodies that move it is proven for the times of the plan: the
+        curve is where it belongs to a node when the plan is there.
 
         Raises:
-            InvalidInput: bodies of the scene move: the plan is proven at its own pace alone.
             UnprovenCurve: nothing could be proven, not even the plan's path with rests.
         """
         from ffsr_plan.planning.smooth_plan import smoothed
 
-        refuse_another_pace("smooth", self.problem)
         return smoothed(self)
 
     def least_fuel(self, margin: float = 0.0) -> SmoothPlan:
@@ -85,7 +86,7 @@ class Plan(Timing, PlanData):
         """
         from ffsr_plan.planning.smooth_plan import least_fuel
 
-        refuse_another_pace("least_fuel", self.problem)
+        refuse_bodies("least_fuel", self.problem)
         return least_fuel(self, margin)
 
     def verify(

@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.bodies.pace import slip
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import finite_array, number
 from ffsr_plan.core.errors import InvalidInput
@@ -56,6 +57,14 @@ class SmoothPlanData:
     def problem(self) -> Problem:
         """Robot, obstacles, start and goal."""
         return self.plan.problem
+
+    @property
+    def slip(self) -> float:
+        """Time by which the whole motion may be early or late and is still free of bodies [s].
+
+        At the pace of the plan, or of the flight that this belongs to; see `Plan.slip`.
+        """
+        return slip(self.problem.scene.moving, self.certificate.least_clearance)
 
     @cached_property
     def change(self) -> float:

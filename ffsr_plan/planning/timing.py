@@ -45,6 +45,7 @@ class Timing:
         proven path, with a rest at every corner. A quantity without a value is not limited;
         `joint_velocity`, `joint_acceleration` and `joint_jerk` default to the URDF's. Limits for
         joints are one number, or numbers by name, and the URDF's for those not named.
+        Past bodies that move it is proven at its own times, if need be slower or after a wait.
 
         Args:
             corners: `smooth` or `rest`.
@@ -63,9 +64,8 @@ class Timing:
             meeting: what a frame arrives with, and when, instead of a rest; see `Meeting`.
 
         Raises:
-            InvalidInput: limits, a duration or a meeting that cannot be, no motion at all, or
-                bodies of the scene that move.
-            UnprovenCurve: see `smooth`.
+            InvalidInput: limits, a duration or a meeting that cannot be, or no motion at all.
+            UnprovenCurve, UnprovenFlight: see `smooth`; nothing could be proven past bodies.
         """
         limits = read_limits(
             self.problem.robot,

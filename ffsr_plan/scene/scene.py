@@ -283,6 +283,11 @@ class Scene:
         """The obstacles that move."""
         return self.bodies + self.debris
 
+    @property
+    def known_until(self) -> float:
+        """Time up to which the motions of all bodies are known [s]."""
+        return min((body.motion.known_until for body in self.bodies), default=np.inf)
+
     @cached_property
     def body_scenes(self) -> tuple[Scene, ...]:
         """The shapes of each body along its own axes, at rest there, grown like all others."""
