@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from ffsr_plan.lattice.certificate import Certificate, Counts
     from ffsr_plan.lattice.layered_lattice import LayeredLattice
     from ffsr_plan.lattice.roadmap import Roadmap
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
@@ -141,6 +142,7 @@ __all__ = [
     "Cycle",
     "Cylinder",
     "DebrisCloud",
+    "Departure",
     "Drift",
     "EdgeProof",
     "Ellipsoid",
@@ -299,6 +301,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "lattice.certificate": ("Certificate", "Counts"),
     "lattice.layered_lattice": ("LayeredLattice",),
     "lattice.roadmap": ("Roadmap",),
+    "meetings.departure": ("Departure",),
     "meetings.meeting": ("Meeting",),
     "planning.certified_plan": ("Plan",),
     "planning.flights": ("SmoothFlight", "TimedPlan"),

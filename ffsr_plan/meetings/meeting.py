@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from ffsr_plan.core.checks import FARTHEST
 from ffsr_plan.core.errors import InvalidInput
@@ -55,6 +55,8 @@ class Meeting:
     Raises:
         InvalidInput: a value that is not finite, or of another type.
     """
+
+    word: ClassVar[str] = "meeting"
 
     frame: Annotated[str, Text("the name of a frame")]
     at: Annotated[float, Number(above=0.0, at_most=_LONGEST)]

@@ -24,6 +24,7 @@ from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_cs
 
 if TYPE_CHECKING:
     from ffsr_plan.display.web.page_server import PageServer
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.planning.smooth_plan import SmoothPlan
@@ -36,14 +37,18 @@ class Plan(Timing, PlanData):
     """A certified whole-body motion. Two plans are equal if all but the computing time is."""
 
     def _flown(
-        self, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting | None
+        self,
+        limits: FlightLimits,
+        corners: str,
+        duration: float | None,
+        ends: Meeting | Departure | None,
     ) -> SmoothFlight | TimedPlan:
         from ffsr_plan.planning.flights import smooth_flight, timed_plan
-        from ffsr_plan.planning.met_plan import met_plan
+        from ffsr_plan.planning.flights_in_motion import flown_in_motion
         from ffsr_plan.planning.smooth_plan import flown_past_bodies
 
-        if meeting is not None:
-            return met_plan(self, limits, corners, duration, meeting)
+        if ends is not None:
+            return flown_in_motion(self, limits, corners, duration, ends)
         if one_of("corners", corners, ("smooth", "rest")) == "smooth":
             if self.problem.scene.moves:
                 return flown_past_bodies(self, limits, duration)

@@ -18,6 +18,7 @@ from ffsr_plan.trajectory.straight_flight import change_of_place, straight_delta
 from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
 
 if TYPE_CHECKING:
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.verification.flights.verify_flight import FlightReport
 
@@ -74,6 +75,11 @@ class TimedPlan(FlightPictures, TimedMotion):
         """None: it ends at rest."""
         return None
 
+    @property
+    def departure(self) -> None:
+        """None: it begins at rest."""
+        return None
+
     def verify(self) -> FlightReport:
         """Check the flight by other code than the planner's; see `FlightReport`."""
         from ffsr_plan.verification.flights import verify_flight as check
@@ -88,7 +94,7 @@ class TimedPlan(FlightPictures, TimedMotion):
 class SmoothFlight(FlightPictures, CurveFlight):
     """A plan flown along its smooth curve, at rest at its ends only; made by `Plan.timed`.
 
-    With a meeting it is not at rest at its end.
+    With a meeting it is not at rest at its end, with a departure not at its begin.
 
     Attributes:
         curve: the curve.
@@ -103,11 +109,13 @@ class SmoothFlight(FlightPictures, CurveFlight):
             `with rests` has them where its path bends.
         limits: those that the flight keeps.
         meeting: what it arrives with; None for a rest.
+        departure: the state that it begins in; None for a rest.
     """
 
     smooth_plan: SmoothPlanData
     limits: FlightLimits
     meeting: Meeting | None = None
+    departure: Departure | None = None
 
     @property
     def problem(self) -> Problem:  # type: ignore[override]  # handed on, not kept twice

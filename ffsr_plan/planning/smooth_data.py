@@ -34,7 +34,8 @@ class SmoothPlanData:
         curve: the curve. Its parameter runs from 0 to the number of its pieces.
         kind: what the curve is: a `spline` whose control points are the plan's nodes, a `refined
             spline` with more of them, the spline `through` the nodes, the plan's path `with rests`
-            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting`.
+            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting` or
+            begins with a `departure`.
         nodes: (m + 1,) parameters of the curve that belong to the plan's nodes.
         length: L by its definition for paths [m]; shorter than the plan's but for `through`.
         objective: F by its definition for paths [length units]. It may be a little larger than the

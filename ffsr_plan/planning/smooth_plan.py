@@ -22,6 +22,7 @@ from ffsr_plan.smoothing.curve_proof import prove_curve
 from ffsr_plan.smoothing.proven_curve import ProvenCurve, proven_curve
 
 if TYPE_CHECKING:
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.trajectory.flight_limits import FlightLimits
@@ -32,14 +33,16 @@ class SmoothPlan(Timing, SmoothPlanData):
     """A whole-body motion without corners, proven free of collisions, the base's reaction included.
 
     Velocity and acceleration are continuous in the curve's parameter. Start and goal are those of
-    the plan; a goal attitude that is demanded is reached again. That of a meeting ends with it.
+    the plan; a goal attitude that is demanded is reached again. That of a meeting ends with it,
+    that of a departure begins with it.
 
     Attributes:
         plan: the plan that was smoothed.
         curve: the curve. Its parameter runs from 0 to the number of its pieces.
         kind: what the curve is: a `spline` whose control points are the plan's nodes, a `refined
             spline` with more of them, the spline `through` the nodes, the plan's path `with rests`
-            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting`.
+            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting` or
+            begins with a `departure`.
         nodes: (m + 1,) parameters of the curve that belong to the plan's nodes.
         length: L by its definition for paths [m]; shorter than the plan's but for `through`.
         objective: F by its definition for paths [length units]. It may be a little larger than the
@@ -50,12 +53,16 @@ class SmoothPlan(Timing, SmoothPlanData):
     """
 
     def _flown(
-        self, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting | None
+        self,
+        limits: FlightLimits,
+        corners: str,
+        duration: float | None,
+        ends: Meeting | Departure | None,
     ) -> SmoothFlight | TimedPlan:
         from ffsr_plan.planning.flights import refuse_pulses, smooth_flight
 
-        if meeting is not None:
-            raise InvalidInput("meeting", meeting, "None along a smooth plan; see Plan.timed")
+        if ends is not None:
+            raise InvalidInput(ends.word, ends, "None along a smooth plan; see Plan.timed")
         if one_of("corners", corners, ("smooth", "rest")) == "rest":
             raise InvalidInput("corners", corners, "smooth: a smooth plan has none to rest at")
         if self.problem.scene.moves:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING
 
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.trajectory.flight_limits import FlightLimits, PerJoint, read_limits
 
 if TYPE_CHECKING:
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.problem.problem import Problem
@@ -38,6 +40,7 @@ class Timing:
         turn_acceleration: float | None = None,
         velocity_jump: float = 0.0,
         meeting: Meeting | None = None,
+        departure: Departure | None = None,
     ) -> SmoothFlight | TimedPlan:
         """The plan flown within limits, from rest at the start to rest at the goal.
 
@@ -62,9 +65,11 @@ class Timing:
             velocity_jump: with `corners="rest"`, the change of the base's velocity by one pulse of
                 the thrusters, which passes a corner instead of a rest [m/s]; see `TimedPlan`.
             meeting: what a frame arrives with, and when, instead of a rest; see `Meeting`.
+            departure: the state of motion to begin in, instead of a rest; see `Departure`. The
+                flight takes `duration`, or that of the problem.
 
         Raises:
-            InvalidInput: limits, a duration or a meeting that cannot be, or no motion at all.
+            InvalidInput: limits, a duration, a meeting or a departure that cannot be, or no motion.
             UnprovenCurve, UnprovenFlight: see `smooth`; nothing could be proven past bodies.
         """
         limits = read_limits(
@@ -81,10 +86,17 @@ class Timing:
             turn_acceleration=turn_acceleration,
             velocity_jump=velocity_jump,
         )
-        return self._flown(limits, corners, duration, meeting)
+        if meeting is not None and departure is not None:
+            raise InvalidInput("departure", departure, "None with a meeting: plan one at a time")
+        ends = departure if meeting is None else meeting
+        return self._flown(limits, corners, duration, ends)
 
     @abstractmethod
     def _flown(
-        self, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting | None
+        self,
+        limits: FlightLimits,
+        corners: str,
+        duration: float | None,
+        ends: Meeting | Departure | None,
     ) -> SmoothFlight | TimedPlan:
         """The flight within limits; see `timed`."""

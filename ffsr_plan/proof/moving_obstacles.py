@@ -107,17 +107,29 @@ class BodyProof:
 
 
 class Touching(NamedTuple):
-    """Shapes that may touch one body, at the end of a motion.
+    """Shapes that may touch one body, on a part of a motion.
 
     Attributes:
         body: number of the body.
         shapes: (g,) the shapes.
-        edge: from which edge on; before it, and at its begin, they may not.
+        edges: (m,) edges on which they may.
+        corners: (m + 1,) ends of edges at which they may; elsewhere on other edges they may not.
     """
 
     body: int
     shapes: Flags
-    edge: int
+    edges: Flags
+    corners: Flags
+
+    @classmethod
+    def since(cls, body: int, shapes: Flags, edge: int, edges: int) -> Touching:
+        """From an edge of so many on, but not at its begin."""
+        return cls(body, shapes, np.arange(edges) >= edge, np.arange(edges + 1) > edge)
+
+    @classmethod
+    def until(cls, body: int, shapes: Flags, edge: int, edges: int) -> Touching:
+        """Before an edge of so many, but not at its begin."""
+        return cls(body, shapes, np.arange(edges) < edge, np.arange(edges + 1) < edge)
 
 
 class MovingObstacles:
@@ -299,8 +311,7 @@ class MovingObstacles:
         pairs = []
         for b, query in enumerate(self._queries):
             poses, placed = self._bodies[b].poses(instant), Placements(frames)
-            inside = layer > 0 and time == 0.0  # a layer, which the edge before it ends at
-            if (aside := self._aside(b, layer - inside)) is not None:
+            if (aside := self._aside(b, layer, time == 0.0)) is not None:
                 placed = moved_aside(placed, np.ones(1, dtype=np.bool_), aside)
             seen = in_axes(placed, poses, shift[None])
             pairs.append(query.nearest_at(seen, 0, np.zeros(3))._replace(obstacle=self._first + b))
@@ -322,20 +333,19 @@ class MovingObstacles:
             step, self._pace, self._roundings[b], aside=self._aside(b, layer),
         )  # fmt: skip
 
-    def _aside(self, b: int, edge: int) -> Flags | None:
-        """(g,) shapes that may touch a body on an edge; None for none."""
+    def _aside(self, b: int, number: int, at_corner: bool = False) -> Flags | None:
+        """(g,) shapes that may touch a body on an edge, or at a corner; None for none."""
         touching = self._touching
-        if touching is None or touching.body != b or edge < touching.edge:
+        if touching is None or touching.body != b:
             return None
-        return touching.shapes
+        return touching.shapes if (touching.edges, touching.corners)[at_corner][number] else None
 
     def _body(self, b: int, parts: int) -> BodyDistances:
         """Distances to one body at the layers or at places inside edges."""
         if (b, parts) not in self._seen:
             placed = self._placements.between(parts) if parts else self._corners
             if not parts and self._touching is not None and self._touching.body == b:
-                after = np.arange(self._edges + 1) > self._touching.edge
-                placed = moved_aside(placed, after, self._touching.shapes)
+                placed = moved_aside(placed, self._touching.corners, self._touching.shapes)
             poses = self._bodies[b].poses(self._instants(parts))
             self._seen[b, parts] = BodyDistances(self._robot, self._queries[b], placed, poses)
         return self._seen[b, parts]

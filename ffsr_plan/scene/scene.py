@@ -297,10 +297,7 @@ class Scene:
         """All obstacles where they are at one time, at rest there.
 
         Args:
-            time: [s], up to which the motions of all bodies are known.
-
-        Returns:
-            A scene of the same spheres, then those of debris; and shapes, then those of bodies.
+            time: [s]; spheres of debris follow the spheres, shapes of bodies the shapes.
         """
         if not self.moves:
             return self
@@ -310,6 +307,12 @@ class Scene:
         if self.debris:
             there += Scene(*spheres_at(self.debris, self.growth, time), sources=self._clouds)
         return there
+
+    def later(self, time: float) -> Scene:
+        """The same scene from a later instant [s] on, which becomes time zero."""
+        bodies = [body.later(time) for body in self.bodies]
+        debris = [cloud.later(time) for cloud in self.debris]
+        return replace(self, bodies=bodies, debris=debris)  # type: ignore[arg-type]
 
     @property
     def is_closed_form(self) -> bool:

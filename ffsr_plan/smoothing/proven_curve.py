@@ -32,7 +32,9 @@ from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.goal_attitude import curve_to_attitude
 from ffsr_plan.trajectory.timetables import NodeTimes
 
-Kind = Literal["spline", "refined spline", "through", "with rests", "least fuel", "meeting"]
+Kind = Literal[
+    "spline", "refined spline", "through", "with rests", "least fuel", "meeting", "departure"
+]
 """What a smooth curve is: see `proven_curve`, `fuel.curve_refinement`, and `meetings`."""
 _BESIDE_REFUSED, _ROUNDS = 3, 7  # rounds of refinement beside what was refused, and in all
 _LEAST_SHARE = 0.1  # of the mean edge, by which nodes that are control points are apart

@@ -74,17 +74,19 @@ class Samples(NamedTuple):
 
 
 class MayTouch(NamedTuple):
-    """Links that may touch a moving body late on a motion.
+    """Links that may touch a moving body at the end or at the begin of a motion.
 
     Attributes:
         links: their names.
         body: number of the body, from 1 on.
         since: after this time they may, which is that of an even sample [s].
+        until: before this time they may, alike [s].
     """
 
     links: tuple[str, ...]
     body: int
     since: float
+    until: float
 
 
 class Course(Protocol):

@@ -275,8 +275,8 @@ class _Sweep:
         stretch = edge[which] - self._first_edge
         values = self.distances.at(samples, which, part, stretch, enough)
         if self._touching is not None:
-            late = samples.instants[which] > self._touching.since
-            values[late & self._ignored[part]] = np.inf
+            times, may = samples.instants[which], self._touching
+            values[(times > may.since) & (times < may.until) & self._ignored[part]] = np.inf
         outer, found = part < self.distances.outer, self.found
         if outer.any():
             k = int(np.flatnonzero(outer)[np.argmin(values[outer])])

@@ -50,14 +50,26 @@ def test_contact_is_allowed_from_an_edge_on(motion):
     free, clearances, _ = verdicts(motion, None)
     assert free == [True, True, True, False]
     assert clearances[-1] <= 0.0
-    late, clearances, least = verdicts(motion, Touching(0, arm, 3))
+    late, clearances, least = verdicts(motion, Touching.since(0, arm, 3, EDGES))
     assert late == [True] * EDGES
     assert 0.0 < least <= clearances.min() + 1e-9
     everything = np.ones(len(arm), dtype=bool)
     middle = (1.37, 1.0, 0.0)  # touched in the middle of edge 2, and at none of its ends
-    free, clearances, _ = verdicts(motion, Touching(0, everything, 3), middle)
+    free, clearances, _ = verdicts(motion, Touching.since(0, everything, 3, EDGES), middle)
     assert np.all(clearances > 0.0)
     assert free == [True, True, False, True]
-    assert verdicts(motion, Touching(0, everything, 2), middle)[0] == [True] * EDGES
+    assert verdicts(motion, Touching.since(0, everything, 2, EDGES), middle)[0] == [True] * EDGES
     others = np.ones(len(arm), dtype=bool) & ~arm
-    assert verdicts(motion, Touching(0, others, 3))[0] == [True, True, True, False]
+    assert verdicts(motion, Touching.since(0, others, 3, EDGES))[0] == [True, True, True, False]
+
+
+def test_contact_is_allowed_until_an_edge(motion):
+    middle, arm = (1.37, 1.0, 0.0), np.ones(len(motion.robot.collision_model.geometryObjects), bool)
+    assert verdicts(motion, Touching.until(0, arm, 2, EDGES), middle)[0][2] is False
+    assert verdicts(motion, Touching.until(0, arm, 3, EDGES), middle)[0] == [True] * EDGES
+    at_start = verdicts(motion, None, (0.0, 1.0, 0.0))
+    assert at_start[1][0] <= 0.0
+    free, clearances, _ = verdicts(motion, Touching.until(0, arm, 1, EDGES), (0.0, 1.0, 0.0))
+    assert free == [True] * EDGES
+    assert clearances[0] > 1.0
+    assert np.array_equal(clearances[1:], at_start[1][1:])

@@ -1,4 +1,4 @@
-"""Begin and end of a flight: at rest at start and goal, or with a frame's pose and twist."""
+"""Begin and end of a flight: at rest at start and goal, or in the states that were asked for."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.dynamics.inverse_dynamics import States
+from ffsr_plan.meetings.departure import Departure
 from ffsr_plan.meetings.meeting import Meeting
 from ffsr_plan.verification.flights.flown import Flown
 from ffsr_plan.verification.flights.met_target import target_axes
@@ -27,6 +28,9 @@ def flight_ends(flight: Flown, velocities: Array, still: float) -> list[str]:
     problem, states = flight.problem, flight.at([0.0, flight.duration])
     slow = still * float(np.max(np.abs(velocities)))
     begins, ends = np.max(np.abs(states.velocities), axis=1) <= slow
+    if flight.departure is not None:
+        problems = _departed(flight, flight.departure, states)
+        return problems if ends else [*problems, "it does not end at rest"]
     if flight.meeting is None:
         problems = other_ends(problem, *states.configurations)
         return problems if begins and ends else [*problems, "it does not rest at both of its ends"]
@@ -38,6 +42,24 @@ def flight_ends(flight: Flown, velocities: Array, still: float) -> list[str]:
             f"it arrives at {flight.duration:.12g} s, not at {flight.meeting.at:.12g} s"
         )
     return problems if begins else [*problems, "it does not begin at rest"]
+
+
+def _departed(flight: Flown, departure: Departure, states: States) -> list[str]:
+    """A begin that is not the state of the departure, and an end that is not the goal."""
+    problem, problems = flight.problem, []
+    for what, found, wanted in (
+        ("configuration", states.configurations[0], departure.configuration),
+        ("velocity", states.velocities[0], departure.velocity),
+    ):
+        error = float(np.max(np.abs(found - wanted)))
+        if not error <= ARRIVAL_LIMIT:
+            problems.append(f"its first {what} misses the departure's by {error:.3g}")
+    missed = states.configurations[1, 7:] - problem.goal[7:]
+    if problem.mode.has_thrusters:
+        missed = np.append(missed, states.configurations[1, :3] - problem.goal[:3])
+    if np.max(np.abs(missed), initial=0.0) > ARRIVAL_LIMIT:
+        problems.append("it does not end at the goal")
+    return problems
 
 
 def _missed(flight: Flown, meeting: Meeting, states: States) -> list[str]:

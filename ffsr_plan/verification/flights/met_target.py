@@ -1,4 +1,4 @@
-"""The moving body that a flight meets, by code of its own: its axes, and what may touch it."""
+"""The moving body that a flight meets or leaves, by code of its own: axes, and who may touch."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from ffsr_plan.core.arrays import Array
+from ffsr_plan.meetings.departure import Departure
 from ffsr_plan.meetings.meeting import Meeting
 from ffsr_plan.verification.flights.flown import Flown
 from ffsr_plan.verification.motion_samples import MayTouch
@@ -49,27 +50,31 @@ def target_axes(flight: Flown, meeting: Meeting) -> TargetAxes:
 
 
 def may_touch(flight: Flown) -> MayTouch | None:
-    """Which links may touch the target, and from when on; None where none may.
+    """Which links may touch the target, and from when or until when; None where none may.
 
-    From then on the frame is near its place on the target, as the samples of the law show.
+    All that time the frame is near its place on the target, as the samples of the law show.
 
     Args:
         flight: the flight.
     """
-    meeting = flight.meeting
-    if meeting is None or meeting.target is None or not meeting.links:
+    leaves, meeting = flight.departure is not None, flight.departure or flight.meeting
+    if meeting is None or meeting.frame is None or not meeting.links:
         return None
     number = _number(flight, meeting)
     course = course_of(flight.problem.scene.bodies[number], flight.duration)
     ends = flight.switch_times
     times = np.append((ends[:-1, None] + np.diff(ends)[:, None] * _LOOKS).ravel(), ends[-1])
     places, turns = course.poses(times)
-    apart = frame_origins(flight, meeting.frame, times) - places
-    own = np.einsum("nji,nj->ni", turns, apart)
-    far = np.flatnonzero(np.linalg.norm(own - own[-1], axis=1) > meeting.within)
+    origins = frame_origins(flight, meeting.frame, times)
+    own = np.einsum("nji,nj->ni", turns, origins - places)
+    apart = np.linalg.norm(own - own[0 if leaves else -1], axis=1)
+    far = np.flatnonzero(apart > meeting.within)
+    if leaves:
+        until = float(ends[(int(far[0]) - 1) // len(_LOOKS)]) if len(far) else np.inf
+        return MayTouch(meeting.links, number + 1, -np.inf, until)
     piece = int(far[-1]) // len(_LOOKS) + 1 if len(far) else 0
     since = float(ends[min(piece, len(ends) - 1)])
-    return MayTouch(meeting.links, number + 1, since)
+    return MayTouch(meeting.links, number + 1, since, np.inf)
 
 
 def frame_origins(flight: Flown, frame: str, times: Array) -> Array:
@@ -83,5 +88,5 @@ def frame_origins(flight: Flown, frame: str, times: Array) -> Array:
     return found
 
 
-def _number(flight: Flown, meeting: Meeting) -> int:
+def _number(flight: Flown, meeting: Meeting | Departure) -> int:
     return [body.name for body in flight.problem.scene.bodies].index(str(meeting.target))

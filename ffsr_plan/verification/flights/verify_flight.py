@@ -195,10 +195,13 @@ def _not_checked(flight: Flown, bodies: Bodies, touching: MayTouch | None) -> It
     yield f"limits, and rates that bound the travel, between {PER_PIECE} instants of each piece"
     if flight.problem.scene.excess > 0.0:
         yield "that the spheres cover what they stand for, and by how much they exceed it"
-    if touching is not None and flight.meeting is not None:
-        late, links = flight.duration - touching.since, ", ".join(touching.links)
-        target = f"'{flight.meeting.target}', which they may touch"
-        yield f"distances of {links} to moving body {target}, in the last {late:.3g} s"
+    if touching is not None:
+        target, links = flight.departure or flight.meeting, ", ".join(touching.links)
+        which = f"{links} to moving body '{target and target.target}', which they may touch"
+        when = f"last {flight.duration - touching.since:.3g} s"
+        if flight.departure is not None:
+            when = f"first {min(touching.until, flight.duration):.3g} s"
+        yield f"distances of {which}, in the {when}"
     yield from functions_not_checked(flight.problem)
     yield from shapes_not_checked(flight.problem.robot, bodies)
 
