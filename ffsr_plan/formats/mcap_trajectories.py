@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.checks import whole_number
+from ffsr_plan.core.checks import text, whole_number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import reason, write_files
 from ffsr_plan.formats.ros_messages import BASE_JOINT, messages_of, trajectory_from
@@ -72,6 +72,8 @@ def read_mcap(
         InvalidInput: names the file, the field, its value and what is allowed.
     """
     target, what = checked_path("trajectory", path, ".mcap"), f"bag '{path}'"
+    if topic is not None:
+        text("topic", topic)
     factory = extra("mcap_ros2.decoder").DecoderFactory
     make_reader, topics = extra("mcap.reader").make_reader, None if topic is None else [topic]
     found: dict[str, list[Any]] = {}
@@ -86,6 +88,8 @@ def read_mcap(
     except Exception as error:  # of the package: damaged files raise many kinds
         allowed = f"an MCAP file of ROS 2 messages ({reason(error)})"
         raise InvalidInput("trajectory", str(path), allowed) from None
+    if topic is not None and not found:
+        raise InvalidInput(f"{what}, topic", topic, "a topic of joints over time in this bag")
     if number is not None:
         whole_number("number", number, at_least=0)
     for kind in (_JOINTS, _BASE, _ROBOT, _DISPLAY):

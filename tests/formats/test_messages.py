@@ -106,8 +106,9 @@ def test_of_several_trajectories_in_a_bag_one_is_chosen(tmp_path):
             assert fm.read_mcap(tmp_path / "two.mcap", **choice).joints["a"][1] == last
     with pytest.raises(fp.InvalidInput, match="number 2 asked for"):
         fm.read_mcap(tmp_path / "two.mcap", number=2)
-    with pytest.raises(fp.InvalidInput, match="number"):
-        fm.read_mcap(tmp_path / "two.mcap", number=-1)
+    for wrong in ({"number": -1}, {"topic": "/arm_2"}, {"topic": 2}):
+        with pytest.raises(fp.InvalidInput, match=next(iter(wrong))):
+            fm.read_mcap(tmp_path / "two.mcap", **wrong)
 
 
 def test_recorded_joint_states_are_rows(tmp_path):
