@@ -12,6 +12,7 @@ from ffsr_plan.certification.bus_mass import on_bus
 from ffsr_plan.certification.judgement import certify
 from ffsr_plan.certification.trajectory_report import TrajectoryReport
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import counted
 from ffsr_plan.formats.scenes.scene_files import read_scene
 from ffsr_plan.formats.trajectory_files import read_trajectory
 from ffsr_plan.robots.loading import load_robot
@@ -104,10 +105,13 @@ def certify_files(
 
 def report_rows(report: TrajectoryReport) -> list[tuple[str, str]]:
     """Names and values of a report, for a table."""
-    samples, contact = report.samples, report.contact
+    samples, contact, pieces = report.samples, report.contact, report.trajectory.pieces
     yes = "yes, proven" if report.free else "NO: contact" if contact else "not proven"
     rows = [("free", yes), ("verdict", report.verdict())]
+    if not report.free:
+        rows.append(("proven free before", f"{report.proven_until:.9g} s"))
     if contact is not None:
+        rows.append(("contact", f"{contact.time:.9g} s"))
         rows.append(("base turned then", f"{np.degrees(contact.turn):.3f} degrees"))
     rows += [
         ("base turned at the end", f"{np.degrees(report.turn):.3f} degrees"),
@@ -115,7 +119,7 @@ def report_rows(report: TrajectoryReport) -> list[tuple[str, str]]:
         ("base moved at the end", f"{samples.shifts[-1]:.4f} m"),
         (f"drift of {report.frame} at the end", f"{report.drift:.4f} m"),
         ("drift at most", f"{report.largest_drift:.4f} m"),
-        ("trajectory", f"{report.trajectory.pieces} {report.trajectory.interpolation} pieces"),
+        ("trajectory", counted(pieces, f"{report.trajectory.interpolation} piece")),
         ("duration", f"{report.trajectory.duration:g} s"),
     ]
     return rows
@@ -136,6 +140,7 @@ def report_figures(report: TrajectoryReport) -> dict[str, Any]:
         "verdict": report.verdict(),
         "proven_clearance": report.proven_clearance,
         "contact": met,
+        "proven_until": report.proven_until,
         "unproven_time": report.unproven_time,
         "base_turn": report.turn,
         "largest_base_turn": report.largest_turn,
