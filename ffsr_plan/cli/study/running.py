@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from ffsr_plan.studies.report.tables import Table
 
-_LEFT_OUT = ("plans", "95 % of times [s]", "example")
+_LEFT_OUT = ("plans", "length [m]", "95 % of times [s]", "example")
 
 
 def run_and_report(

@@ -51,7 +51,7 @@ def study_tables(rows: Sequence[Row], axes: Sequence[str]) -> list[Table]:
             for name, own in by_planner.items()
             if (chosen := [row for row in own if row.get(axis) == value])
         )
-        tables.append(Table(f"By {axis}", (axis, "planner", *COLUMNS), cells, 2))
+        tables.append(Table(f"By {axis}", ("value", "planner", *COLUMNS), cells, 2))
     failed = tuple(
         (planner, outcome, error, _short(example), str(count))
         for planner, outcome, error, count, example in failures(rows)
