@@ -110,7 +110,9 @@ def test_without_planners_that_of_the_scenario_runs_with_its_seed(load):
 
 
 def test_a_file_that_a_scenario_names_is_part_of_the_key(load, tmp_path):
-    text = STUDY.replace("[[scenario.clouds]]", "[[scenario.obstacles]]\ncsv='s.csv'\n[[scenario.clouds]]")
+    text = STUDY.replace(
+        "[[scenario.clouds]]", "[[scenario.obstacles]]\ncsv='s.csv'\n[[scenario.clouds]]"
+    )
     (tmp_path / "s.csv").write_text("x,y,z,radius\n9,9,0,0.1\n")
     before = {task.key for task in load(text).grid.tasks()}
     (tmp_path / "s.csv").write_text("x,y,z,radius\n9,9,0,0.2\n")

@@ -272,7 +272,8 @@ def test_the_interface_is_covered(calls):
         "UncheckedLinks", "RobotSummary", "Scenario",
         "RecomputedNumber", "SearchResult", "SlowestPlace",
         "SmoothCurve", "SmoothFlight", "SmoothPlan", "Solution", "SpaceRobot",
-        "States", "StudyProgress", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum", "Pace", "Poses",
+        "States", "StudyProgress", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum",
+        "Pace", "Poses",
         "TrajectoryContact", "TrajectoryReport",
     }  # fmt: skip
     without_arguments = {

@@ -88,14 +88,14 @@ def main() -> None:
         assert begun(f"{folder}/alone", arguments.scenes, "").wait() == 0
         alone = fp.StudyResult(f"{folder}/alone")
         seconds = time.perf_counter() - begin
-        lines.append(["1, left alone", "", len(alone), alone.plans, f"{seconds:.0f}", "-"])
+        lines.append(["1, left alone", "", str(len(alone)), str(alone.plans), f"{seconds:.0f}", "-"])
         for seed, engine in enumerate(("processes", "dask")):
             place, begin = f"{folder}/{engine}", time.perf_counter()
             after = killed(place, engine, arguments.scenes, arguments.kills, seed)
             result, seconds = fp.StudyResult(place), time.perf_counter() - begin
             same = "yes" if result.digest() == alone.digest() else "NO"
             name, at = f"2, {engine}, killed", ", ".join(map(str, after))
-            lines.append([name, at, len(result), result.plans, f"{seconds:.0f}", same])
+            lines.append([name, at, str(len(result)), str(result.plans), f"{seconds:.0f}", same])
     text = "\n\n".join(
         [
             "# Studies that are killed",
