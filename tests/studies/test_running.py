@@ -96,8 +96,10 @@ def test_a_study_killed_at_random_ends_with_the_same_rows(whole, tmp_path):
     found = fp.StudyResult(tmp_path)
     again = {row["key"]: row["finished"] for row in found.rows()}
     assert found.digest() == whole.digest()
-    small_study().run(tmp_path)
-    assert {row["key"]: row["finished"] for row in found.rows()} == again  # nothing twice
+    told = []
+    small_study().run(tmp_path, on_progress=told.append)
+    assert [each.done for each in told] == [24]  # nothing twice
+    assert {row["key"]: row["finished"] for row in found.rows()} == again
 
 
 def test_ctrl_c_keeps_what_came_back_and_the_next_run_goes_on(whole, tmp_path):
