@@ -198,7 +198,7 @@ def local(workers: int) -> Iterator[Client]:
             cluster = LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",  # any free port, and for nobody else
                 memory_limit=0,  # without it, Dask would kill workers by a limit of its own
                 silence_logs=50,
             )
