@@ -73,10 +73,11 @@ def certify_files(
     robot: RobotFile,
     scene: str | None,
     modes: Sequence[str],
+    tolerance: float = 1e-4,
     *,
     interpolation: str | None = None,
+    topic: str | None = None,
     frame: str | None = None,
-    tolerance: float = 1e-4,
 ) -> list[TrajectoryReport]:
     """Judge a trajectory in each of several modes.
 
@@ -85,9 +86,10 @@ def certify_files(
         robot: the robot's file.
         scene: path of the scene's file, or name of a scenario; None for no obstacles.
         modes: see `certify`.
-        interpolation: in place of what the file says.
-        frame: see `certify`.
         tolerance: see `certify`.
+        interpolation: in place of what the file says.
+        topic: of a bag, the only one that is read.
+        frame: see `certify`.
 
     Returns:
         A report for each mode.
@@ -95,7 +97,7 @@ def certify_files(
     Raises:
         InvalidInput: what is wrong in the files or options.
     """
-    given = read_trajectory(trajectory, interpolation)
+    given = read_trajectory(trajectory, interpolation, topic)
     obstacles = Scene() if scene is None else read_scene(scene)
     made = robot.robot()
     return [
