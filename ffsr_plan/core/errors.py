@@ -286,8 +286,8 @@ class UnprovenCurve(PlanningError):
         when = "" if self.time is None else f" at {self.time:.4g} s"
         return (
             f"no smooth curve could be proven free: on edge {self.edge} of {self.edges}, link "
-            f"'{link}' {encounter(-depth, obstacle, source)}{when}; what may help: a plan with "
-            "more clearance, by min_clearance or a larger delta"
+            f"'{link}' {encounter(-depth, obstacle, source)}{when}; what may help: more "
+            "clearance, by min_clearance or a larger delta; where it meets, other links or poses"
         )
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.errors import UnprovenCurve
+from ffsr_plan.core.errors import InvalidInput, UnprovenCurve
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.curves.smooth_curve import SmoothCurve
 from ffsr_plan.dynamics.motion import Motion
@@ -18,7 +18,7 @@ from ffsr_plan.flight_search.straight_flights import LEAST_TOLERANCE
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight, flight_at
 from ffsr_plan.smooth_flight.pace import Pace
-from ffsr_plan.smooth_flight.timed_curve import pace_within
+from ffsr_plan.smooth_flight.timed_curve import check_duration, pace_within
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.proven_curve import Kind, ProvenCurve, proven_curve
 from ffsr_plan.timed_proof.flown_proof import FlownProof, Refusal, prove_waiting
@@ -70,6 +70,7 @@ class _Search:
         """The proof of the first flight along a curve that is proven, or of the last one tried."""
         smooth, proof = SmoothCurve(curve), None
         fastest = pace_within(smooth, self._limits)
+        self._check_given(fastest.duration)
         for wait, duration in flight_times(self._problem, fastest.duration, self._given):
             waiting = self._waiting(wait, tolerance)
             if waiting.refusal is not None and proof is not None:
@@ -104,6 +105,15 @@ class _Search:
         assert self.pace is not None
         curve = SmoothCurve(found.proof.curve)
         return FlownCurve(flight_at(curve, self._limits, self.pace), found)
+
+    def _check_given(self, shortest: float) -> None:
+        """Raise `InvalidInput` for too short a duration, or what refused faster curves before."""
+        if self._given is None:
+            return
+        try:
+            check_duration(self._given, shortest)
+        except InvalidInput as error:
+            raise (self.error() or error) from None
 
     def _waiting(self, wait: float, tolerance: float) -> FlownProof:
         """The proof of a wait at the start; of one that is longer than a refused one, that."""

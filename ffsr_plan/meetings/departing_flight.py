@@ -24,9 +24,10 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.meetings.approach import braking, with_end
 from ffsr_plan.meetings.departure import Departure
 from ffsr_plan.meetings.meeting_flight import WINDOWS, MeetingFlight, refuse_jerk, unproven
-from ffsr_plan.meetings.met_body import touching_links
+from ffsr_plan.meetings.met_body import frame_origins, met_body, place_on, touching_links
 from ffsr_plan.meetings.timed_approach import SPEED, first_possible, pieces_for
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.scene.scene import Scene
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight, curve_flight
 from ffsr_plan.smooth_flight.pace_search import EndSpeeds
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
@@ -34,6 +35,7 @@ from ffsr_plan.smoothing.proven_curve import ProvenCurve
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 
 _FACTORS = 1, 2, 4  # of the number of control points
+_HELD = 1e-6  # [m] by which a frame may be elsewhere on its target
 _BALANCED = 1e-8  # [rad/s or m/s] by which the base may move otherwise than momentum lets it
 
 
@@ -69,7 +71,8 @@ def departing_flight(
         InvalidInput: a departure that cannot be, naming what is allowed.
         UnprovenCurve: no curve could be proven free.
     """
-    refuse_jerk(limits, motion, "a departure")
+    refuse_jerk(limits, motion, departure.word)
+    _check_target(motion, departure, problem.scene)
     begin, scene = _begin(motion, departure, limits), problem.scene
     if duration > (known := scene.known_until):
         allowed = f"at most {known:.6g} s, up to which the motions of all bodies are known"
@@ -123,6 +126,24 @@ def _begin(motion: Motion, departure: Departure, limits: FlightLimits) -> _Begin
             allowed = f"at most {most:.4g} m/s or rad/s of {name}, not {speed:.4g}"
             raise InvalidInput("departure.velocity", velocity.tolist(), allowed)
     return _Begin(q, values, rates, base)
+
+
+def _check_target(motion: Motion, departure: Departure, scene: Scene) -> None:
+    """Raise `InvalidInput` for a target that the frame does not hold when the flight begins."""
+    number, robot = met_body(departure, scene), motion.robot
+    if departure.frame is None:
+        return
+    q = robot.check_configuration("departure.configuration", departure.configuration)
+    if number is None or departure.place is None:
+        frame_origins(robot, departure.frame, q[None])
+        return
+    place = place_on(scene.bodies[number], 0.0, robot, departure.frame, q)
+    if np.linalg.norm(place - departure.place) > _HELD:
+        allowed = (
+            f"{np.round(place, 6).tolist()}, where the frame is on the target at time zero; a "
+            "flight after another has the scene `scene.later(duration of the one before)`"
+        )
+        raise InvalidInput("departure.place", departure.place.tolist(), allowed)
 
 
 def _check_momentum(motion: Motion, q: Array, velocity: Array) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, ClassVar, Protocol
 
 from numpy.typing import ArrayLike
@@ -12,6 +13,8 @@ from ffsr_plan.core.setting_rules import Number, Numbers, Text, Vector
 from ffsr_plan.core.settings import setting, settings
 from ffsr_plan.dynamics.inverse_dynamics import States
 from ffsr_plan.meetings.meeting import LinkNames, Meeting
+from ffsr_plan.meetings.met_body import met_body, place_on
+from ffsr_plan.problem.problem import Problem
 
 
 class Ended(Protocol):
@@ -20,6 +23,10 @@ class Ended(Protocol):
     @property
     def duration(self) -> float:
         """Duration [s]."""
+
+    @property
+    def problem(self) -> Problem:
+        """What was planned."""
 
     @property
     def meeting(self) -> Meeting | None:
@@ -48,6 +55,8 @@ class Departure:
         frame: name of the frame that holds it.
         links: names of the links that may touch the target at the begin.
         within: distance of the frame from its place on the target within which they may [m].
+        place: (3,) where the frame's origin is on the target at the begin, along the target's axes
+            [m]; it is checked. None for anywhere.
 
     Raises:
         InvalidInput: a value that is not finite, or of another type; links without target or frame.
@@ -61,6 +70,7 @@ class Departure:
     frame: Annotated[str, Text("the name of a frame, or None")] | None = None
     links: Annotated[tuple[str, ...], LinkNames()] = setting(default=())
     within: Annotated[float, Number(above=0.0, at_most=FARTHEST)] = 0.05
+    place: Annotated[Vector, Numbers(3, at_most=FARTHEST)] | None = setting(default=None)
 
     def __post_init__(self) -> None:
         for name in ("target", "frame"):
@@ -76,9 +86,22 @@ class Departure:
 
         Args:
             flight: the flight before.
+
+        Raises:
+            InvalidInput: it is no flight.
         """
+        if not all(hasattr(flight, name) for name in ("at", "duration", "meeting", "problem")):
+            raise InvalidInput("flight", flight, "a flight, as plan.timed returns it")
         last, met = flight.at([flight.duration]), flight.meeting
         state = last.configurations[0], last.velocities[0]
         if met is None:
             return cls(*state)
-        return cls(*state, met.target, met.frame, met.links, met.within)
+        made, scene = (
+            cls(*state, met.target, met.frame, met.links, met.within),
+            flight.problem.scene,
+        )
+        if (number := met_body(met, scene)) is None:
+            return made
+        of = flight.problem.robot, met.frame, state[0]
+        place = place_on(scene.bodies[number], flight.duration, *of)
+        return replace(made, place=place)  # type: ignore[arg-type]

@@ -55,9 +55,10 @@ def meeting_flight(
         InvalidInput: a meeting that cannot be, naming what is allowed.
         UnprovenCurve: a curve that meets on time could not be proven free.
     """
-    refuse_jerk(limits, motion, "a meeting")
-    arrival, scene = Arrival(motion, meeting, problem.scene), problem.scene
+    refuse_jerk(limits, motion, meeting.word)
+    scene = problem.scene
     _check_known(meeting, scene)
+    arrival = Arrival(motion, meeting, scene)
     refused: list[CurveProof] = []
     for window in _by_delta_v(arrival, limits):
         for factor in _FACTORS:
@@ -111,12 +112,12 @@ def refuse_jerk(limits: FlightLimits, motion: Motion, what: str) -> None:
     Args:
         limits: the limits.
         motion: of the plan.
-        what: what has a speed there.
+        what: `meeting` or `departure`.
     """
     names = "thruster_jerk", "", *(f"joint_jerk, joint {j}" for j in motion.robot.joint_names)
     for name, most in zip(names, limits.jerk, strict=True):
         if np.isfinite(most):
-            raise InvalidInput(name, float(most), f"no limit on jerk with {what}")
+            raise InvalidInput(name, float(most), f"no limit on jerk with a {what}")
 
 
 def _check_known(meeting: Meeting, scene: Scene) -> None:

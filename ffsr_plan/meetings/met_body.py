@@ -58,7 +58,10 @@ def met_body(meeting: AtTarget, scene: Scene) -> int | None:
     if meeting.target is None:
         return None
     names = [body.name for body in scene.bodies]
-    if names.count(meeting.target) != 1:
+    if (count := names.count(meeting.target)) > 1:
+        allowed = f"a name that one moving body has, not {count}"
+        raise InvalidInput(f"{meeting.word}.target", meeting.target, allowed)
+    if not count:
         known = ", ".join(repr(name) for name in names if name) or "none of the scene has one"
         allowed = f"the name of one moving body of the scene: {known}"
         raise InvalidInput(f"{meeting.word}.target", meeting.target, allowed)
@@ -101,13 +104,43 @@ def _on_target(frame: str, body: MovingBody, curve: CurvedMotion, times: Timetab
     """(n, 3) where the frame is in the target's axes, along a curve [m]."""
     places = np.arange(curve.edges * _LOOKS + 1.0) / _LOOKS
     edge = np.minimum(places.astype(np.int64), curve.edges - 1)
-    origins = _origins(curve.robot, frame, curve.at(edge, places - edge))
+    origins = frame_origins(curve.robot, frame, curve.at(edge, places - edge))
     poses = body.poses(times.instants(places))
     return rotations.rotate(rotations.inverse(poses.attitudes), origins - poses.positions)
 
 
-def _origins(robot: SpaceRobot, frame: str, configurations: Array) -> Array:
-    """(n, 3) origins of a frame at configurations (n, nq), world [m]."""
+def place_on(body: MovingBody, time: float, robot: SpaceRobot, frame: str, q: Array) -> Array:
+    """Where a frame's origin is on a body.
+
+    Args:
+        body: the body.
+        time: [s].
+        robot: the robot.
+        frame: name of the frame.
+        q: (nq,) configuration of the robot then.
+
+    Returns:
+        (3,) along the body's axes [m].
+    """
+    poses, origin = body.poses([time]), frame_origins(robot, frame, q[None])
+    own = rotations.rotate(rotations.inverse(poses.attitudes), origin - poses.positions)
+    return np.asarray(own[0])
+
+
+def frame_origins(robot: SpaceRobot, frame: str, configurations: Array) -> Array:
+    """Origins of a frame.
+
+    Args:
+        robot: the robot.
+        frame: name of the frame.
+        configurations: (n, nq).
+
+    Returns:
+        (n, 3) world [m].
+
+    Raises:
+        InvalidInput: the robot has no such frame.
+    """
     model, found = robot.model, np.empty((len(configurations), 3))
     data, number = model.createData(), frame_index(model, frame)
     for row, q in zip(found, configurations, strict=True):

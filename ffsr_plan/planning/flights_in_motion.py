@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ffsr_plan.core.checks import one_of
+from ffsr_plan.core.checks import number, one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.meetings.departing_flight import departing_flight
 from ffsr_plan.meetings.departure import Departure
@@ -12,6 +12,8 @@ from ffsr_plan.planning.flights import SmoothFlight
 from ffsr_plan.planning.smooth_plan import smooth_plan
 from ffsr_plan.plans.plan_data import PlanData
 from ffsr_plan.trajectory.flight_limits import FlightLimits
+
+_LONGEST = 1e9  # [s]
 
 
 def flown_in_motion(
@@ -34,8 +36,6 @@ def flown_in_motion(
         InvalidInput: arguments that do not go together, or a meeting or departure that cannot be.
         UnprovenCurve: no curve could be proven free.
     """
-    if not isinstance(ends, (Meeting, Departure)):
-        raise InvalidInput("meeting, departure", ends, "a Meeting, a Departure or None")
     if one_of("corners", corners, ("smooth", "rest")) != "smooth":
         raise InvalidInput("corners", corners, f"'smooth' with a {ends.word}")
     if limits.velocity_jump > 0.0:
@@ -49,6 +49,7 @@ def flown_in_motion(
         time = problem.duration if duration is None else duration
         if time is None:
             raise InvalidInput("duration", None, "a time [s] with a departure")
+        time = number("duration", time, above=0.0, at_most=_LONGEST)
         flight, proven = departing_flight(problem, motion, ends, limits, time)
     return SmoothFlight(
         **vars(flight),

@@ -97,8 +97,15 @@ def _one_of(meeting: Meeting | None, departure: Departure | None) -> Meeting | D
     """What the flight ends or begins with.
 
     Raises:
-        InvalidInput: both are given.
+        InvalidInput: both are given, or something else.
     """
+    from ffsr_plan.meetings.departure import Departure
+    from ffsr_plan.meetings.meeting import Meeting
+
+    if meeting is not None and not isinstance(meeting, Meeting):
+        raise InvalidInput("meeting", meeting, "a Meeting or None")
+    if departure is not None and not isinstance(departure, Departure):
+        raise InvalidInput("departure", departure, "a Departure or None")
     if meeting is not None and departure is not None:
         raise InvalidInput("departure", departure, "None with a meeting: plan one at a time")
     return departure if meeting is None else meeting

@@ -67,7 +67,7 @@ class ProgressBodies:
         if scene.debris:
             own = ROUNDING + self._travel.attitude_error
             self._debris = DebrisProof(
-                motion.robot, scene, pace, self._travel, self._placements, own, deadline
+                motion.robot, scene, pace, pace.edges, self._travel, self._placements, own, deadline
             )
             longest.append(self._debris.travel + self._debris.rounding)
         self.travel = np.concatenate([[0.0], np.cumsum(np.max(longest, axis=0))])

@@ -263,6 +263,7 @@ class DebrisProof:
         robot: SpaceRobot,
         scene: Scene,
         pace: Timetable,
+        edges: int,
         bounds: EdgeTravel,
         placements: NominalPlacements,
         rounding: float,
@@ -274,13 +275,14 @@ class DebrisProof:
             robot: the robot.
             scene: whose debris counts here, at least one sphere.
             pace: at which the edges follow one another.
+            edges: m, number of edges of the pace.
             bounds: travel bounds along the motion.
             placements: of the shapes along it.
             rounding: length added to every travel bound for the robot's own errors [m].
             deadline: after which measurements raise `OutOfTime`.
         """
         self.pace, self.bounds, self.placements = pace, bounds, placements
-        self._instants = pace.instants(np.arange(len(bounds.speeds) + 1.0))
+        self._instants = pace.instants(np.arange(edges + 1.0))
         middle = 0.5 * float(self._instants[0] + self._instants[-1])
         self.distances = DebrisDistances(robot, scene, middle, deadline)
         largest = max(float(each.radii.max()) for each in scene.debris) + scene.growth

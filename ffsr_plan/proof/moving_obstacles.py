@@ -189,7 +189,7 @@ class MovingObstacles:
         longest, roundings = [*self._ways], [*self._roundings]
         self._debris: DebrisProof | None = None
         if scene.debris:
-            own = motion.robot, scene, pace, travel, placements, rounding, deadline
+            own = motion.robot, scene, pace, motion.edges, travel, placements, rounding, deadline
             self._debris = DebrisProof(*own)
             longest.append(self._debris.travel)
             roundings.append(self._debris.rounding)

@@ -56,7 +56,7 @@ def pace_within(
         return _with_jerk(JerkLimits(curve, limits), search, fastest, duration)
     if duration is None:
         return fastest
-    _check_duration(duration, fastest.duration)
+    check_duration(duration, fastest.duration)
     if not at_rest:
         return pace_of(samples.ends, search.on_time(duration)).ending_at(duration)
     calm = pace_of(samples.ends, search.calmest(duration))
@@ -68,7 +68,7 @@ def _with_jerk(jerks: JerkLimits, search: Search, fastest: Pace, duration: float
     shortest, width = jerks.fastest(fastest)
     if duration is None:
         return shortest
-    _check_duration(duration, shortest.duration)
+    check_duration(duration, shortest.duration)
     ends = search.samples.ends
 
     def law(logarithm: float) -> Pace:
@@ -89,8 +89,13 @@ def _with_jerk(jerks: JerkLimits, search: Search, fastest: Pace, duration: float
     return calm.slowed(max(duration / calm.duration, 1.0))
 
 
-def _check_duration(duration: float, shortest: float) -> None:
-    """Raise `InvalidInput` for a duration in which the curve cannot be flown."""
+def check_duration(duration: float, shortest: float) -> None:
+    """Raise `InvalidInput` for a duration in which a curve cannot be flown.
+
+    Args:
+        duration: the duration [s].
+        shortest: that of the fastest flight within limits [s].
+    """
     number("duration", duration, above=0.0, at_most=_LONGEST)
     if duration < shortest * (1.0 - _ROUNDING):
         allowed = f"at least {shortest:.6g} s, the fastest flight within these limits"

@@ -96,6 +96,16 @@ def test_contact_by_a_link_that_is_not_named_is_refused(departing, retreat):
         retreat.timed(**TIGHT, departure=replace(departing.departure, target="hubble"))
 
 
+def test_a_target_that_the_frame_does_not_hold_is_refused(departing, retreat, capture):
+    early = replace(retreat, problem=replace(retreat.problem, scene=capture[0].problem.scene))
+    with pytest.raises(fp.InvalidInput, match=r"departure.place: .*scene.later"):
+        early.timed(**TIGHT, departure=departing.departure)
+    with pytest.raises(fp.InvalidInput, match=r"frame: got 'toool'"):
+        retreat.timed(**TIGHT, departure=replace(departing.departure, frame="toool"))
+    with pytest.raises(fp.InvalidInput, match=r"flight: .*plan\.timed"):
+        fp.Departure.from_flight(retreat)
+
+
 @pytest.mark.parametrize("mode", ["free-flying", "attitude-held", "free-floating"])
 def test_a_robot_departs_from_where_it_met_a_frame(mode):
     plan = plan_for("planar_dual_arm", mode)
@@ -148,6 +158,10 @@ def test_too_short_a_flight_names_a_time_that_is_possible(plan, moving):
     ("given", "match"),
     [
         ({}, "duration: got None; allowed: a time"),
+        ({"duration": 0.0}, "duration: got 0"),
+        ({"departure": "tool"}, "departure: got 'tool'; allowed: a Departure or None"),
+        ({"duration": np.nan}, "duration: got nan"),
+        ({"duration": "80"}, "duration: got '80'"),
         ({"duration": AT, "corners": "rest"}, "corners: .*'smooth' with a departure"),
         ({"duration": AT, "joint_jerk": 1.0}, "no limit on jerk with a departure"),
         ({"duration": AT, "joint_velocity": 0.01}, "departure.velocity: .*at most 0.01"),
@@ -156,7 +170,7 @@ def test_too_short_a_flight_names_a_time_that_is_possible(plan, moving):
 )
 def test_what_does_not_go_with_a_departure_is_refused(plan, moving, given, match):
     with pytest.raises(fp.InvalidInput, match=match):
-        plan.timed(departure=moving, **{**LIMITS["free-flying"], **given})
+        plan.timed(**{"departure": moving, **LIMITS["free-flying"], **given})
 
 
 def test_links_need_a_target_and_a_frame():

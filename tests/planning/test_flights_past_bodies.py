@@ -168,3 +168,10 @@ def test_a_flight_that_debris_hits_is_found(behind, fastest):
     report = replace(fastest, problem=replace(fastest.problem, scene=scene)).verify()
     assert not report.ok
     assert any("cloud" in each for each in report.problems)
+
+
+@pytest.mark.parametrize("duration", [1.0, 0.0, -5.0, np.nan, "100"])
+def test_a_duration_that_cannot_be_is_refused(behind, duration):
+    for plan in (behind, behind.smooth()):
+        with pytest.raises(fp.InvalidInput, match="duration: got"):
+            plan.timed(**LIMITS, duration=duration)
