@@ -113,6 +113,9 @@ if TYPE_CHECKING:
         Trails,
         TreeCycle,
     )
+    from ffsr_plan.studies.running import StudyProgress
+    from ffsr_plan.studies.study import Study
+    from ffsr_plan.studies.study_result import StudyResult
     from ffsr_plan.trajectory.trajectory import Trajectory
     from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.flights.verify_flight import FlightReport
@@ -206,6 +209,9 @@ __all__ = [
     "Spin",
     "StartInCollision",
     "States",
+    "Study",
+    "StudyProgress",
+    "StudyResult",
     "TimedPlan",
     "Track",
     "Trails",
@@ -339,6 +345,9 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "Trails",
         "TreeCycle",
     ),
+    "studies.running": ("StudyProgress",),
+    "studies.study": ("Study",),
+    "studies.study_result": ("StudyResult",),
     "trajectory.trajectory": ("Trajectory",),
     "tree_search.tree_planner": ("TreePlanner",),
     "verification.flights.verify_flight": ("FlightReport",),

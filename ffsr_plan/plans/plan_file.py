@@ -31,27 +31,9 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
 
     None stands for what is infinite: clearances in an empty scene, costs of cycles without a path.
     """
-    problem = plan.problem
     return {
         "format": FORMAT,
-        "problem": {
-            "robot": robot_table(problem.robot),
-            "scene": {
-                "centers": problem.scene.centers.tolist(),
-                "radii": problem.scene.radii.tolist(),
-                "excess": problem.scene.excess,
-                "sources": [list(source) for source in problem.scene.sources],
-                **shape_entries(problem.scene),
-                **moving_entries(problem.scene),
-            },
-            "start": problem.start.tolist(),
-            "goal": problem.goal.tolist(),
-            "lattice": None if problem.lattice is None else dataclasses.asdict(problem.lattice),
-            "mode": problem.mode.value,
-            **{name: getattr(problem, name) for name in PLAIN},
-            **_given("window", problem.window),
-            **_pace(problem),
-        },
+        "problem": problem_table(plan.problem),
         "planner": planner_table(plan.planner),
         "seed": plan.seed,
         "nodes": plan.nodes.tolist(),
@@ -81,6 +63,32 @@ def to_dict(plan: PlanData) -> dict[str, Any]:
         "interrupted": plan.interrupted,
         "seconds": plan.seconds,
         **({} if plan.fuel is None else {"fuel": plan.fuel._asdict()}),
+    }
+
+
+def problem_table(problem: Problem) -> dict[str, Any]:
+    """A problem in plain Python values, without further goals that are allowed.
+
+    Args:
+        problem: the problem.
+    """
+    return {
+        "robot": robot_table(problem.robot),
+        "scene": {
+            "centers": problem.scene.centers.tolist(),
+            "radii": problem.scene.radii.tolist(),
+            "excess": problem.scene.excess,
+            "sources": [list(source) for source in problem.scene.sources],
+            **shape_entries(problem.scene),
+            **moving_entries(problem.scene),
+        },
+        "start": problem.start.tolist(),
+        "goal": problem.goal.tolist(),
+        "lattice": None if problem.lattice is None else dataclasses.asdict(problem.lattice),
+        "mode": problem.mode.value,
+        **{name: getattr(problem, name) for name in PLAIN},
+        **_given("window", problem.window),
+        **_pace(problem),
     }
 
 

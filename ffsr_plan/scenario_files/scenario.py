@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from ffsr_plan.bodies.debris.debris_cloud import DebrisCloud
 from ffsr_plan.bodies.moving_body import MovingBody
@@ -65,20 +66,25 @@ class Scenario:
                 file and field.
             PoseOutOfReach, GoalInCollision: no goal configuration for the pose of an end effector.
         """
-        path = _find(source)
-        what = f"scenario '{source}'"
-        text = read_text("scenario", path, "utf-8-sig")
+        data, folder = read_tables(source)
         try:
-            data = tomllib.loads(text)
-        except (RecursionError, ValueError) as error:  # a TOMLDecodeError is a ValueError
-            deep = isinstance(error, RecursionError)
-            reason = "lists or tables nested too deeply" if deep else str(error)
-            raise InvalidInput(what, reason, "a TOML file") from None
-        try:
-            return _scenario(from_mapping(ScenarioFile, data), path.parent)
+            return cls.from_tables(data, folder)
         except InvalidInput as error:
-            place = f"{what}: {error.what.removeprefix('.')}"
+            place = f"scenario '{source}': {error.what.removeprefix('.')}"
             raise InvalidInput(place, error.value, error.allowed) from None
+
+    @classmethod
+    def from_tables(cls, tables: Mapping[str, Any], folder: Path) -> Scenario:
+        """The scenario of the tables of a file.
+
+        Args:
+            tables: what `read_tables` gives, or the same with other values.
+            folder: that paths in the tables are relative to.
+
+        Raises:
+            InvalidInput, PoseOutOfReach, GoalInCollision: see `load`.
+        """
+        return _scenario(from_mapping(ScenarioFile, tables), folder)
 
     def __repr__(self) -> str:
         planner = "default" if self.planner is None else self.planner.name
@@ -86,6 +92,39 @@ class Scenario:
             f"Scenario({self.title!r}, {self.problem!r}, planner={planner}, seed={self.seed}, "
             f"refine={self.refine})"
         )
+
+
+def read_tables(source: str | Path) -> tuple[dict[str, Any], Path]:
+    """The tables of a scenario file, not yet checked, and the folder of the file.
+
+    Args:
+        source: path of a TOML file, or name of a bundled scenario ("fig2a").
+
+    Raises:
+        InvalidInput: no such file, or not TOML (with line and column).
+    """
+    path = _find(source)
+    return toml_tables("scenario", source, path), path.parent
+
+
+def toml_tables(what: str, source: object, path: Path) -> dict[str, Any]:
+    """The tables of a TOML file.
+
+    Args:
+        what: kind of the file, for errors.
+        source: the file as the user named it, for errors.
+        path: the file.
+
+    Raises:
+        InvalidInput: no such file, or not TOML (with line and column).
+    """
+    text = read_text(what, path, "utf-8-sig")
+    try:
+        return tomllib.loads(text)
+    except (RecursionError, ValueError) as error:  # a TOMLDecodeError is a ValueError
+        deep = isinstance(error, RecursionError)
+        reason = "lists or tables nested too deeply" if deep else str(error)
+        raise InvalidInput(f"{what} '{source}'", reason, "a TOML file") from None
 
 
 def _find(source: object) -> Path:

@@ -1,0 +1,1 @@
+"""Studies: thousands of plans of a grid of problems, planners and seeds."""

@@ -1,0 +1,1 @@
+"""The record of a study: its rows in SQLite, its plans beside them."""

@@ -1,0 +1,1 @@
+"""The report of a study: tables, pictures, a page, CSV and Parquet."""

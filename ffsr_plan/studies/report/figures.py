@@ -1,0 +1,165 @@
+"""Pictures of a study: success over time, costs compared, figures by the values of an axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ffsr_plan.display.figure_style import SERIES
+from ffsr_plan.studies.report.summary import (
+    Row,
+    by,
+    compared_axes,
+    cost_ratios,
+    numbers,
+    shown_value,
+    values_of,
+)
+from ffsr_plan.studies.tasks.row import PLAN
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_WIDTH, _HEIGHT = 7.2, 3.6  # [in]
+_BOX = 0.7  # share of the room between two values that boxes take
+_GREY = "#9aa0a8"
+
+
+def study_figures(rows: Sequence[Row], axes: Sequence[str]) -> dict[str, Figure]:
+    """The pictures of a study, by name; those for which there are no numbers are left out.
+
+    Args:
+        rows: of the study.
+        axes: names of its axes.
+    """
+    plans = [row for row in rows if row["outcome"] == PLAN]
+    planners = list(dict.fromkeys(row["planner"] for row in rows))
+    found: dict[str, Figure] = {}
+    if numbers(plans, "seconds"):
+        found["success"] = _success(rows, planners)
+    if len(planners) > 1 and any(cost_ratios(rows).values()):
+        found["costs"] = _costs(rows, planners)
+    for k, axis in enumerate(compared_axes(rows, axes), 1):
+        if numbers([row for row in plans if row.get(axis) is not None], "objective"):
+            found[f"axis_{k}"] = _by_axis(rows, planners, axis)
+    return found
+
+
+def _success(rows: Sequence[Row], planners: Sequence[str]) -> Figure:
+    """Share of tasks that had a plan after some computing time."""
+    figure, (ax,) = _figure(1)
+    groups, latest = by(rows, lambda row: row["planner"]), 0.0
+    times = {name: _times(groups[name]) for name in planners}
+    latest = max((values[-1] for values in times.values() if values), default=1.0)
+    first = min((values[0] for values in times.values() if values), default=0.1)
+    for k, name in enumerate(planners):
+        values, total = times[name], len(groups[name])
+        shares = 100.0 * np.arange(len(values) + 1) / total
+        steps = [0.5 * first, *values]
+        ax.step([*steps, 2 * latest], [*shares, shares[-1]], where="post", **_line(k), label=name)
+    ax.set_xscale("log")
+    ax.set_xlim(0.7 * first, 1.4 * latest)
+    ax.set_ylim(0.0, 102.0)
+    ax.set_xlabel("computing time of one plan [s]")
+    ax.set_ylabel("tasks with a plan [%]")
+    _legend(ax)
+    return figure
+
+
+def _times(rows: Sequence[Row]) -> list[float]:
+    planned = [row for row in rows if row["outcome"] == PLAN]
+    return sorted(max(each, 1e-4) for each in numbers(planned, "seconds"))
+
+
+def _costs(rows: Sequence[Row], planners: Sequence[str]) -> Figure:
+    """Share of tasks whose F is within a factor of the best one of their problem."""
+    figure, (ax,) = _figure(1)
+    ratios = cost_ratios(rows)
+    finite = [each for values in ratios.values() for each in values if math.isfinite(each)]
+    most = max(1.02, float(np.quantile(finite, 0.99)))
+    for k, name in enumerate(planners):
+        values = sorted(ratios.get(name, []))
+        inside = [100.0 * (each - 1.0) for each in values if math.isfinite(each)]
+        shares = 100.0 * np.arange(1, len(inside) + 1) / max(len(values), 1)
+        begin = [0.0] if inside else []
+        ax.step([*begin, *inside, 1e6], [*(0.0 * np.ones(len(begin))), *shares, *shares[-1:]] if inside else [0.0], where="post", **_line(k), label=name)  # fmt: skip
+    ax.set_xlim(0.0, 100.0 * (most - 1.0))
+    ax.set_ylim(0.0, 102.0)
+    ax.set_xlabel("F above the best of all planners and seeds on the same problem [%]")
+    ax.set_ylabel("tasks [%], of solved problems")
+    _legend(ax)
+    return figure
+
+
+def _by_axis(rows: Sequence[Row], planners: Sequence[str], axis: str) -> Figure:
+    """Boxes of F and of the proven clearance by the values of an axis, and the success."""
+    values = values_of(rows, axis)
+    figure, (left, middle, right) = _figure(3)
+    for k, name in enumerate(planners):
+        own = [row for row in rows if row["planner"] == name]
+        cells = [[row for row in own if row.get(axis) == value] for value in values]
+        planned = [[row for row in cell if row["outcome"] == PLAN] for cell in cells]
+        place = (k + 0.5) / len(planners) - 0.5
+        width = _BOX / len(planners)
+        at = np.arange(len(values)) + _BOX * place
+        share = [100.0 * len(p) / len(c) if c else math.nan for p, c in zip(planned, cells, strict=True)]  # fmt: skip
+        left.bar(at, share, 0.9 * width, color=SERIES[k % len(SERIES)], label=name)
+        _boxes(middle, [numbers(p, "objective") for p in planned], at, width, k)
+        _boxes(right, [numbers(p, "least_clearance") for p in planned], at, width, k)
+    left.set_ylim(0.0, 102.0)
+    for ax, title in ((left, "tasks with a plan [%]"), (middle, "objective F"), (right, "proven clearance [m]")):  # fmt: skip
+        ax.set_title(title, fontsize=9, loc="left")
+        ax.set_xticks(range(len(values)), [shown_value(value) for value in values])
+        ax.set_xlim(-0.6, len(values) - 0.4)
+        ax.set_xlabel(axis)
+    right.set_ylim(bottom=0.0)
+    figure.legend(*left.get_legend_handles_labels(), loc="outside upper left", ncols=4, frameon=False, fontsize=8)  # fmt: skip
+    return figure
+
+
+def _boxes(ax: Axes, data: Sequence[Sequence[float]], at: Any, width: float, k: int) -> None:  # noqa: ANN401 - an array
+    """Boxes from quartile to quartile with the median, whiskers from 5 to 95 %."""
+    filled = [(place, values) for place, values in zip(at, data, strict=True) if values]
+    if not filled:
+        return
+    colour = SERIES[k % len(SERIES)]
+    ax.boxplot(
+        [values for _, values in filled],
+        positions=[place for place, _ in filled],
+        widths=0.8 * width,
+        whis=(5, 95),
+        showfliers=False,
+        patch_artist=True,
+        manage_ticks=False,
+        boxprops={"facecolor": colour, "alpha": 0.35, "edgecolor": colour},
+        medianprops={"color": colour, "linewidth": 1.8},
+        whiskerprops={"color": colour},
+        capprops={"color": colour},
+    )
+
+
+def _figure(columns: int) -> tuple[Figure, list[Axes]]:
+    from matplotlib.figure import Figure
+
+    width = _WIDTH if columns == 1 else 1.35 * _WIDTH
+    figure = Figure(figsize=(width, _HEIGHT), layout="constrained")
+    made = figure.subplots(1, columns, squeeze=False)[0]
+    for ax in made:
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.grid(axis="y", color=_GREY, alpha=0.25)
+        ax.set_axisbelow(True)
+        ax.tick_params(labelsize=8)
+    return figure, list(made)
+
+
+def _line(k: int) -> dict[str, Any]:
+    styles = ("-", "--", "-.", ":")
+    return {"color": SERIES[k % len(SERIES)], "linewidth": 1.8, "linestyle": styles[k % 4]}
+
+
+def _legend(ax: Axes) -> None:
+    ax.legend(frameon=False, fontsize=8, loc="lower right")

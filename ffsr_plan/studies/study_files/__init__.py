@@ -1,0 +1,1 @@
+"""Study files: TOML that describes a grid of problems, planners and seeds."""
