@@ -11,6 +11,7 @@ from ffsr_plan.problem_set.families.drafts import (
     SPATIAL,
     Draft,
     Family,
+    Tables,
     angles,
     joints,
     posture,
@@ -40,7 +41,7 @@ def draw(rng: np.random.Generator, number: int) -> Draft:
     degrees = rng.uniform(10.0, widest)
     vector *= math.radians(degrees) / float(np.linalg.norm(vector))
     begin, end = rest + rng.normal(0.0, 0.4, (2, 6))
-    tables = {
+    tables: Tables = {
         "robot": {"urdf": robot.name, "mode": "free-flying" if flies else "free-floating"},
         "start": {"joints": joints(robot, begin)},
         "goal": {"attitude": angles(vector), "joints": joints(robot, end)},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -47,7 +48,8 @@ class Draft(NamedTuple):
     blocked: bool = True
 
 
-class Family(NamedTuple):
+@dataclass(frozen=True)
+class Family:
     """Problems of one kind.
 
     Attributes:

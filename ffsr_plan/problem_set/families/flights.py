@@ -9,6 +9,7 @@ from ffsr_plan.problem_set.families.drafts import (
     SPATIAL,
     Draft,
     Family,
+    Tables,
     angles,
     joints,
     numbers,
@@ -37,7 +38,7 @@ def draw(rng: np.random.Generator, number: int) -> Draft:
     )
     held = number % 5 == 4
     place = numbers([10.0, *rng.uniform(-0.8, 0.8, 2)])
-    tables = {
+    tables: Tables = {
         "robot": {"urdf": name, "mode": "attitude-held" if held else "free-flying"},
         "start": {"joints": joints(robot, start)},
         "goal": {"position": place, "joints": joints(robot, goal)},

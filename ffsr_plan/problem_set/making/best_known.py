@@ -1,0 +1,134 @@
+"""The best plans known, improved: planned again, verified, judged, and kept where better.
+
+    python -m ffsr_plan.problem_set.making.best_known --time 10 [--family NAME] [--rounds 1]
+
+Problems on which least time was spent come first, so that it can be cut and called again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ffsr_plan.core.errors import FfsrPlanError, GoalPoseIgnored
+from ffsr_plan.formats.plan_trajectories import trajectory_of
+from ffsr_plan.planning.certified_plan import Plan
+from ffsr_plan.planning.plan_and_refine import plan
+from ffsr_plan.problem.free_objective import STATIONS
+from ffsr_plan.problem.objective import motion_objective
+from ffsr_plan.problem.problem import Problem
+from ffsr_plan.problem_set.bench_problem import BenchProblem
+from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
+from ffsr_plan.problem_set.judging.judgement import judge
+from ffsr_plan.problem_set.set_index import DATA, ProblemSet
+from ffsr_plan.studies.tasks.row import package_version
+
+DURATION = 100.0  # [s] of trajectories where nothing moves
+
+
+def bound_of(problem: Problem) -> tuple[float, str]:
+    """F that no motion falls below, and how it was made.
+
+    Args:
+        problem: the problem.
+    """
+    cap = np.inf if problem.clearance_cap is None else problem.clearance_cap
+    pieces = np.full(STATIONS + 1, cap)
+    least = motion_objective(problem, problem.straight_length, pieces)
+    far = "" if problem.clearance_cap is None else ", obstacles as far as counts"
+    return least, f"straight way{far}"
+
+
+def improved(given: BenchProblem, known: BestPlans, seconds: float) -> str:
+    """Plan a problem once more, and keep what is better.
+
+    Args:
+        given: the problem.
+        known: the best plans; what was found is put there.
+        seconds: time limit of the planner [s].
+
+    Returns:
+        What came of it, in a few words.
+    """
+    problem = given.problem
+    old = known.get(given.name) or BestPlan(given.name, *bound_of(problem))
+    seed = 0 if not old.tried else int(old.tried * 1000) % 100_000
+    begin = time.perf_counter()
+    try:
+        made = plan(problem, None, seed, time_limit=seconds, on_interrupt="raise")
+    except FfsrPlanError as error:
+        spent = time.perf_counter() - begin
+        known.put(replace(old, tried=round(old.tried + spent, 3)), None)
+        return f"{type(error).__name__}: {str(error)[:90]}"
+    spent = round(old.tried + time.perf_counter() - begin, 3)
+    if not made.verify().ok:
+        known.put(replace(old, tried=spent), None)
+        return "NOT VERIFIED"
+    trajectory = trajectory_of(made, duration=problem.duration or DURATION)
+    verdict = judge(given, trajectory)
+    if not verdict.accepted:
+        known.put(replace(old, tried=spent), None)
+        return f"REFUSED: {verdict.reason}"
+    row = replace(
+        old,
+        length=verdict.length,
+        objective=verdict.objective,
+        delta_v=verdict.delta_v,
+        clearance=verdict.clearance,
+        planner=made.planner.name,
+        seed=seed,
+        seconds=round(made.seconds, 3),
+        version=package_version(),
+        tried=spent,
+        lattice_objective=float(made.lattice_objective) if problem.lattice else None,
+        lattice_optimum=_lattice_optimum(made),
+    )
+    if old.objective is not None and row.objective is not None and old.objective <= row.objective:
+        known.put(replace(old, tried=spent), None)
+        return f"F {row.objective:.4f}, {old.objective:.4f} stays"
+    known.put(row, trajectory)
+    return f"F {row.objective:.4f}, L {row.length:.3f} m, {made.seconds:.1f} s"
+
+
+def _lattice_optimum(made: Plan) -> float | None:
+    """F of Eq. 8 of the exact optimum of the lattice; None where it is not known."""
+    exact = made.problem.lattice is not None and made.optimum_is_exact
+    return float(made.optimum) if exact else None
+
+
+def main() -> None:
+    """Run the command."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument(
+        "--time", type=float, help="limit of a plan [s]; that of the problem without"
+    )
+    parser.add_argument("--family", help="only this one")
+    parser.add_argument("--rounds", type=int, default=1)
+    parser.add_argument("--missing", action="store_true", help="only problems without a plan")
+    parser.add_argument("--data", type=Path, default=DATA)
+    given = parser.parse_args()
+    warnings.simplefilter("ignore", GoalPoseIgnored)
+    problems, known = ProblemSet(given.data), BestPlans(given.data)
+    for _ in range(given.rounds):
+        names = problems.names(given.family)
+
+        def spent(name: str) -> tuple[float, str]:
+            row = known.get(name)
+            return 0.0 if row is None else row.tried, name.partition("/")[2]
+
+        for name in sorted(names, key=spent):
+            row = known.get(name)
+            if given.missing and row is not None and row.objective is not None:
+                continue
+            problem = problems[name]
+            said = improved(problem, known, given.time or problem.time_limit)
+            print(f"{name} ({problem.title}): {said}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
