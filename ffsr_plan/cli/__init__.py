@@ -1,5 +1,8 @@
 """The command line."""
 
 from ffsr_plan.cli.commands import app, main
+from ffsr_plan.cli.study.commands import study_app
+
+app.add_typer(study_app, name="study")
 
 __all__ = ["app", "main"]

@@ -17,7 +17,7 @@ from typing import Annotated
 
 import typer
 
-from ffsr_plan.cli.terminal import errors_on_stderr, out_console
+from ffsr_plan.cli.console.terminal import errors_on_stderr, out_console
 from ffsr_plan.search.interruption import end_command
 
 app = typer.Typer(
@@ -87,9 +87,9 @@ def demo(
 ) -> None:
     """Plan, verify and show the scene of the paper's Fig. 2(a) with the default planner."""
     with errors_on_stderr():
-        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.console.output import Output
+        from ffsr_plan.cli.console.result_files import check_target, unused_path
         from ffsr_plan.cli.planning import Options, plan_and_report
-        from ffsr_plan.cli.result_files import check_target, unused_path
 
         output = Output(quiet, as_json)
         target = check_target(out, force) if out is not None else unused_path(Path("ffsr-demo"))
@@ -143,9 +143,9 @@ def plan(
 ) -> None:
     """Plan a scenario, verify the plan, and write it to the directory --out."""
     with errors_on_stderr():
-        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.console.output import Output
+        from ffsr_plan.cli.console.result_files import check_target
         from ffsr_plan.cli.planning import LiveOptions, Options, plan_and_report
-        from ffsr_plan.cli.result_files import check_target
         from ffsr_plan.core.errors import InvalidInput
 
         output = Output(quiet, as_json)
@@ -173,7 +173,7 @@ def verify(
 ) -> None:
     """Verify a saved plan all along its motion, independently of the planner."""
     with errors_on_stderr():
-        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.console.output import Output
         from ffsr_plan.cli.saved_plans import verify_and_report
 
         verify_and_report(plan_file, samples, Output(quiet, as_json))
@@ -190,7 +190,7 @@ def export(
 ) -> None:
     """Write the path of a saved plan as a CSV table with units in its header."""
     with errors_on_stderr():
-        from ffsr_plan.cli.result_files import check_replacement
+        from ffsr_plan.cli.console.result_files import check_replacement
         from ffsr_plan.planning.certified_plan import Plan
 
         check_replacement("PATH.csv", table, force)
@@ -208,7 +208,7 @@ def gif(
 ) -> None:
     """Write a saved plan as an animated GIF."""
     with errors_on_stderr():
-        from ffsr_plan.cli.result_files import check_replacement
+        from ffsr_plan.cli.console.result_files import check_replacement
         from ffsr_plan.planning.certified_plan import Plan
 
         check_replacement("PATH.gif", picture, force)
@@ -255,7 +255,7 @@ def timed(
 ) -> None:
     """Time a saved plan within limits: duration, delta-v, thrust, torques."""
     with errors_on_stderr():
-        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.console.output import Output
         from ffsr_plan.cli.saved_plans import FlightFiles, time_and_report
 
         limits = {
@@ -322,9 +322,9 @@ def certify(
     """Judge any trajectory: proven free when the base reacts, or the first contact."""
     with errors_on_stderr():
         from ffsr_plan.certification import certified_files
-        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.console.output import Output
+        from ffsr_plan.cli.console.result_files import check_replacement
         from ffsr_plan.cli.printed_tables import side_by_side
-        from ffsr_plan.cli.result_files import check_replacement
 
         output = Output(quiet, as_json)
         if page is not None:
@@ -362,7 +362,7 @@ def robots() -> None:
 def literature(quiet: Quiet = False, as_json: Json = False) -> None:
     """Recompute numbers from publications; exit status 1 if one is off its tolerance."""
     with errors_on_stderr():
-        from ffsr_plan.cli.output import Output
+        from ffsr_plan.cli.console.output import Output
         from ffsr_plan.cli.printed_tables import show_numbers
 
         if not show_numbers(Output(quiet, as_json)):

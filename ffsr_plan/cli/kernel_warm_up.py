@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ffsr_plan.cli.terminal import err_console, out_console, with_progress
+from ffsr_plan.cli.console.terminal import err_console, out_console, with_progress
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.kernels import announcement
 from ffsr_plan.core.kernels.compiling_time import Stopwatch

@@ -8,12 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
 
-from ffsr_plan.cli.output import Output
+from ffsr_plan.cli.console.output import Output
+from ffsr_plan.cli.console.result_files import write_results
+from ffsr_plan.cli.console.terminal import err_console, with_progress
 from ffsr_plan.cli.plan_figures import plan_figures, report_figures
 from ffsr_plan.cli.printed_tables import plan_table, times_table
-from ffsr_plan.cli.result_files import write_results
 from ffsr_plan.cli.step_times import StepTimes
-from ffsr_plan.cli.terminal import err_console, with_progress
 from ffsr_plan.core.errors import InvalidInput, PlanNotVerified
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from ffsr_plan.core.formatting import counted
 from ffsr_plan.plans.plan_summary import plan_rows
 
 if TYPE_CHECKING:
+    from ffsr_plan.cli.console.output import Output
     from ffsr_plan.cli.flight_figures import FlightFigures
-    from ffsr_plan.cli.output import Output
     from ffsr_plan.cli.step_times import StepTimes
     from ffsr_plan.plans.plan_data import PlanData
     from ffsr_plan.published_numbers.recomputed_number import RecomputedNumber

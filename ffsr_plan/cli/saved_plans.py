@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from ffsr_plan.cli.console.result_files import check_replacement
+from ffsr_plan.cli.console.terminal import with_progress
 from ffsr_plan.cli.flight_figures import flight_figures
 from ffsr_plan.cli.plan_figures import report_figures
 from ffsr_plan.cli.printed_tables import flight_table, report_table
-from ffsr_plan.cli.result_files import check_replacement
 from ffsr_plan.cli.step_times import StepTimes
-from ffsr_plan.cli.terminal import with_progress
 from ffsr_plan.core.errors import PlanNotVerified
 
 if TYPE_CHECKING:
-    from ffsr_plan.cli.output import Output
+    from ffsr_plan.cli.console.output import Output
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
 

@@ -50,6 +50,6 @@ def progress_shown(total: int, wanted: bool) -> Iterator[OnProgress]:
             failed = f", {progress.failed} failed" if progress.failed else ""
             bar.update(task, completed=progress.done, description=f"plans, {workers}{failed}")
             if progress.notice and wanted:
-                console.print(f"ffsr-plan: {progress.notice}")
+                console.print(f"ffsr-plan: {progress.notice}", soft_wrap=True)
 
         yield tell

@@ -101,6 +101,56 @@ class StudyResult:
             raise InvalidInput("row", row, "a row whose plan was kept")
         return Plan.load(self.directory / name)
 
+    def write_report(self, directory: str | Path) -> list[Path]:
+        """Write `report.html`, a page with tables and pictures, and each picture as PNG and PDF.
+
+        Args:
+            directory: for the files, made if it is not there; existing files are replaced.
+
+        Returns:
+            Paths of the files.
+
+        Raises:
+            InvalidInput: a file that cannot be written, or a study without rows.
+        """
+        from ffsr_plan.studies.report.report_files import write_report
+
+        rows = self._some_rows()
+        folder = checked_path("directory", directory)
+        return write_report(self.title or self.directory.name, rows, self.axes, folder)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the rows as CSV, without tracebacks; a cell without a value is empty.
+
+        Args:
+            path: of the file; an existing one is replaced.
+
+        Raises:
+            InvalidInput: a file that cannot be written.
+        """
+        from ffsr_plan.studies.report.exports import write_csv_rows
+
+        write_csv_rows(checked_path("path", path), self.rows())
+
+    def to_parquet(self, path: str | Path) -> None:
+        """Write the rows as Parquet, by the extra `parquet`; read it by `pandas.read_parquet`.
+
+        Args:
+            path: of the file; an existing one is replaced.
+
+        Raises:
+            InvalidInput: a file that cannot be written, or pyarrow is not installed.
+        """
+        from ffsr_plan.studies.report.exports import write_parquet_rows
+
+        write_parquet_rows(checked_path("path", path), self.rows())
+
+    def _some_rows(self) -> list[Row]:
+        rows = self.rows()
+        if not rows:
+            raise InvalidInput("study", str(self.directory), "a study with at least one row")
+        return rows
+
     def __repr__(self) -> str:
         return f"StudyResult({str(self.directory)!r}, {len(self)} rows, {self.plans} plans)"
 

@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from ffsr_plan.cli import app
-from ffsr_plan.cli.result_files import RESULTS
+from ffsr_plan.cli.console.result_files import RESULTS
 
 QUICK = """
 title = "quick"

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.cli.output import plain
-from ffsr_plan.cli.result_files import RESULTS
+from ffsr_plan.cli.console.output import plain
+from ffsr_plan.cli.console.result_files import RESULTS
 from tests.cli.test_commands import QUICK, run
 
 __all__ = ["run"]  # a fixture

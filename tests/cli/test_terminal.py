@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 from ffsr_plan import errors
 from ffsr_plan.cli import planning
 from ffsr_plan.cli.commands import app
-from ffsr_plan.cli.terminal import errors_on_stderr
+from ffsr_plan.cli.console.terminal import errors_on_stderr
 
 
 def leave(error):

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import ffsr_plan as fp
-from ffsr_plan.cli.result_files import RESULTS, write_results
+from ffsr_plan.cli.console.result_files import RESULTS, write_results
 from tests.cli.test_commands import QUICK
 
 MOMENTS = 20

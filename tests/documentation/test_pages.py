@@ -7,6 +7,7 @@ import json
 import re
 import shlex
 import webbrowser
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -52,9 +53,16 @@ def test_code_on_a_page_runs_and_prints_the_output_below_it(page, tmp_path, monk
             assert printed.getvalue() == block.shown
 
 
+def is_study(block):
+    """Whether a file on a page describes a study; the commands below it run two scenes of it."""
+    return "[scenario." in block.text
+
+
 @pytest.mark.parametrize("page", with_blocks("sh"))
 def test_the_commands_on_a_page_run(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    for block in filter(is_study, blocks(page, "toml")):
+        Path("scenes.toml").write_text(block.text.replace("count = 50", "count = 2"))
     for block in blocks(page, "sh"):
         for line in block.text.splitlines():
             words = shlex.split(line.split(" > ")[0], comments=True)
@@ -67,6 +75,10 @@ def test_the_commands_on_a_page_run(page, tmp_path, monkeypatch):
 @pytest.mark.parametrize("page", with_blocks("toml"))
 def test_the_scenarios_on_a_page_can_be_planned(page, tmp_path):
     for block in blocks(page, "toml"):
+        if is_study(block):
+            (tmp_path / "scenes.toml").write_text(block.text)
+            assert len(fp.Study.load(tmp_path / "scenes.toml")) > 1
+            continue
         file = tmp_path / "scenario.toml"
         file.write_text(block.text)
         assert fp.plan(fp.load_scenario(file), fp.LatticeOptimum()).verify(50).ok

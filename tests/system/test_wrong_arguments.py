@@ -14,6 +14,7 @@ import pytest
 import trimesh
 
 import ffsr_plan as fp
+from tests.helpers.small_studies import small_problem
 
 ODD_VALUES = [
     None, 3, -1, 0, "x", "", "a\0b", "n" * 5000, float("nan"), float("inf"), 1e308, 10**400, 10**30,
@@ -57,6 +58,11 @@ def calls(plan, tmp_path_factory):
     judged = fp.certify(robot, scene, motion)
     fp.formats.write_csv(folder / "motion.csv", motion)
     motion_fields = {name: getattr(motion, name) for name in fp.Trajectory.__annotations__}
+
+    (folder / "study.toml").write_text("[scenario]\nfile = 'fig2a'\n")
+    small = small_problem()
+    study = fp.Study({"p": small}, "lattice-optimum")
+    result = study.run(folder / "study")
 
     def show_and_go_on(**given):
         return plan.show(**given, block=False)
@@ -162,6 +168,17 @@ def calls(plan, tmp_path_factory):
         fp.formats.write_moveit_scene: {"path": folder / "s.scene", "scene": scene},
         fp.formats.write_primitives: {"path": folder / "s.json", "scene": scene},
         fp.formats.read_primitives: {"path": folder / "s.json", "problem": 0},
+        fp.Study: {"problems": {"p": small}, "planners": None, "seeds": 1, "title": "t",
+                   "axes": None, "refine": None, "time_limit": None, "memory_limit": None,
+                   "plans": True},
+        fp.Study.load: {"path": folder / "study.toml"},
+        study.run: {"directory": folder / "study", "workers": 1, "scheduler": None,
+                    "engine": "in-process", "retry_failed": False, "progress": False},
+        fp.StudyResult: {"directory": folder / "study"},
+        result.plan: {"row": result.rows()[0]},
+        result.to_csv: {"path": folder / "rows.csv"},
+        result.to_parquet: {"path": folder / "rows.parquet"},
+        result.write_report: {"directory": folder / "report"},
         fp.formats.write_mjcf: {"path": folder / "m.xml", "robot": robot, "scene": scene,
                                 "trajectory": motion},
         fp.inverse_kinematics: {"robot": robot, "scene": None, "frame": "left_3",
@@ -255,7 +272,8 @@ def test_the_interface_is_covered(calls):
         "UncheckedLinks", "RobotSummary", "Scenario",
         "RecomputedNumber", "SearchResult", "SlowestPlace",
         "SmoothCurve", "SmoothFlight", "SmoothPlan", "Solution", "SpaceRobot",
-        "States", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum", "Pace", "Poses",
+        "States", "StudyProgress", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum",
+        "Pace", "Poses",
         "TrajectoryContact", "TrajectoryReport",
     }  # fmt: skip
     without_arguments = {

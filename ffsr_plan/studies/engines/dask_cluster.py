@@ -62,9 +62,9 @@ class DaskCluster:
     def slots(self) -> int:
         """The number of workers, at least 1; after a loss it is asked for each time."""
         if self._losses or time.monotonic() - self._counted > _COUNTING:
-            self._count, self._counted = max(1, len(self._client.nthreads())), time.monotonic()
-            self._losses = max(0, self._losses - 1)
-            if self._count < self._workers:
+            there, self._counted = len(self._client.nthreads()), time.monotonic()
+            self._count, self._losses = max(1, there), max(0, self._losses - 1)
+            if there < self._workers:
                 self._client.cluster.scale(self._workers)
         return self._count
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 _WIDTH, _HEIGHT = 7.2, 3.6  # [in]
 _BOX = 0.7  # share of the room between two values that boxes take
 _GREY = "#9aa0a8"
+_SAME_COST = 1.0005
 
 
 def study_figures(rows: Sequence[Row], axes: Sequence[str]) -> dict[str, Figure]:
@@ -41,12 +42,17 @@ def study_figures(rows: Sequence[Row], axes: Sequence[str]) -> dict[str, Figure]
     found: dict[str, Figure] = {}
     if numbers(plans, "seconds"):
         found["success"] = _success(rows, planners)
-    if len(planners) > 1 and any(cost_ratios(rows).values()):
+    if len(planners) > 1 and _differ(cost_ratios(rows)):
         found["costs"] = _costs(rows, planners)
     for k, axis in enumerate(compared_axes(rows, axes), 1):
         if numbers([row for row in plans if row.get(axis) is not None], "objective"):
             found[f"axis_{k}"] = _by_axis(rows, planners, axis)
     return found
+
+
+def _differ(ratios: dict[str, list[float]]) -> bool:
+    """Whether there is anything to see in a picture of costs."""
+    return any(each > _SAME_COST for values in ratios.values() for each in values)
 
 
 def _success(rows: Sequence[Row], planners: Sequence[str]) -> Figure:
@@ -84,9 +90,8 @@ def _costs(rows: Sequence[Row], planners: Sequence[str]) -> Figure:
     for k, name in enumerate(planners):
         values = sorted(ratios.get(name, []))
         inside = [100.0 * (each - 1.0) for each in values if math.isfinite(each)]
-        shares = 100.0 * np.arange(1, len(inside) + 1) / max(len(values), 1)
-        begin = [0.0] if inside else []
-        ax.step([*begin, *inside, 1e6], [*(0.0 * np.ones(len(begin))), *shares, *shares[-1:]] if inside else [0.0], where="post", **_line(k), label=name)  # fmt: skip
+        shares = 100.0 * np.arange(len(inside) + 1) / max(len(values), 1)
+        ax.step([0.0, *inside, 1e6], [*shares, shares[-1]], where="post", **_line(k), label=name)
     ax.set_xlim(0.0, 100.0 * (most - 1.0))
     ax.set_ylim(0.0, 102.0)
     ax.set_xlabel("F above the best of all planners and seeds on the same problem [%]")
@@ -106,18 +111,23 @@ def _by_axis(rows: Sequence[Row], planners: Sequence[str], axis: str) -> Figure:
         place = (k + 0.5) / len(planners) - 0.5
         width = _BOX / len(planners)
         at = np.arange(len(values)) + _BOX * place
-        share = [100.0 * len(p) / len(c) if c else math.nan for p, c in zip(planned, cells, strict=True)]  # fmt: skip
+        share = [
+            100.0 * len(found) / len(cell) if cell else math.nan
+            for found, cell in zip(planned, cells, strict=True)
+        ]
         left.bar(at, share, 0.9 * width, color=SERIES[k % len(SERIES)], label=name)
         _boxes(middle, [numbers(p, "objective") for p in planned], at, width, k)
         _boxes(right, [numbers(p, "least_clearance") for p in planned], at, width, k)
     left.set_ylim(0.0, 102.0)
-    for ax, title in ((left, "tasks with a plan [%]"), (middle, "objective F"), (right, "proven clearance [m]")):  # fmt: skip
+    titles = ("tasks with a plan [%]", "objective F", "proven clearance [m]")
+    for ax, title in zip((left, middle, right), titles, strict=True):
         ax.set_title(title, fontsize=9, loc="left")
         ax.set_xticks(range(len(values)), [shown_value(value) for value in values])
         ax.set_xlim(-0.6, len(values) - 0.4)
         ax.set_xlabel(axis)
     right.set_ylim(bottom=0.0)
-    figure.legend(*left.get_legend_handles_labels(), loc="outside upper left", ncols=4, frameon=False, fontsize=8)  # fmt: skip
+    handles, labels = left.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=4, frameon=False, fontsize=8)
     return figure
 
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 from ffsr_plan.core.checks import path as checked_path
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.errors import InvalidInput, PlanningError
 from ffsr_plan.core.settings import from_mapping
 from ffsr_plan.scenario_files.planner_tables import ByPlannerName, PlannerTable
-from ffsr_plan.scenario_files.scenario import read_tables, toml_tables
+from ffsr_plan.scenario_files.scenario import Scenario, read_tables, toml_tables
 from ffsr_plan.scenario_files.scenario_schema import ScenarioFile
 from ffsr_plan.studies.study_files.axis_values import Values, shown, with_values
 from ffsr_plan.studies.study_files.scenario_grid import BaseScenario, ScenarioGrid
@@ -112,6 +112,8 @@ def _checked(bases: list[BaseScenario], axes: Mapping[str, Values]) -> ScenarioF
                 read.append(from_mapping(ScenarioFile, made))
             except InvalidInput as error:
                 _blame_axis(base, axes, error)
+            with suppress(PlanningError):  # a goal in collision is a result, as any other
+                Scenario.from_tables(made, base.folder)
     for key, values in axes.items():
         for value in values[1:_MOST_CHECKED]:
             with _at(f"axes.{key}"):

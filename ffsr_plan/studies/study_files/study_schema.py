@@ -21,6 +21,7 @@ from ffsr_plan.studies.tasks.given_values import (
 )
 
 _FILE = {"type": "string", "minLength": 1}
+_INLINE = {"type": "object", "title": "Scenario"}  # replaced by the schema of scenario files
 _SEED = {"type": "integer", "minimum": 0, "maximum": LARGEST_SEED}
 
 
@@ -54,7 +55,7 @@ class ScenarioOfStudy(Rule):
             "required": ["file"],
             "additionalProperties": False,
         }
-        return {"anyOf": [named, {"$ref": "#/$defs/Scenario"}]}
+        return {"anyOf": [named, dict(_INLINE)]}
 
 
 @dataclass(frozen=True)
@@ -166,6 +167,8 @@ def study_schema() -> dict[str, Any]:
     own = TypeAdapter(StudyFile).json_schema()
     scenario.pop("$schema")
     inner = scenario.pop("$defs")
+    kinds = own["properties"]["scenario"]["anyOf"]
+    kinds[kinds.index(_INLINE)] = {"$ref": "#/$defs/Scenario"}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **own,

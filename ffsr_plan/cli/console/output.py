@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ffsr_plan.cli.terminal import out_console
+from ffsr_plan.cli.console.terminal import out_console
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.kernels import announcement
 

@@ -1,0 +1,1 @@
+"""What all commands share: the terminal, output for people and scripts, result files."""

@@ -1,0 +1,1 @@
+"""The command `ffsr-plan study`: studies of many plans, and their reports."""

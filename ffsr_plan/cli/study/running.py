@@ -1,0 +1,153 @@
+"""The work of `ffsr-plan study`: a run with its progress, and a report."""
+
+from __future__ import annotations
+
+import shlex
+import signal
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ffsr_plan.cli.console.output import Output
+from ffsr_plan.cli.console.terminal import INTERRUPTED, err_console
+from ffsr_plan.studies.study import Study
+from ffsr_plan.studies.study_result import StudyResult
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from ffsr_plan.studies.report.tables import Table
+
+_LEFT_OUT = ("plans", "length [m]", "95 % of times [s]", "example")
+
+
+def run_and_report(
+    file: str,
+    out: str | None,
+    workers: int,
+    scheduler: str | None,
+    retry_failed: bool,
+    output: Output,
+    command: Sequence[str],
+) -> bool:
+    """Run a study, or go on with it, and show its tables.
+
+    Args:
+        file: path of the study file.
+        out: directory for rows and plans, or None for one beside the file.
+        workers: processes on this computer.
+        scheduler: address of a Dask scheduler, or None.
+        retry_failed: whether tasks are repeated that ended without a plan.
+        output: where tables are shown.
+        command: that goes on with the study after Ctrl-C.
+
+    Returns:
+        Whether any task ended in a fault.
+
+    Raises:
+        typer.Exit: status 130 after Ctrl-C.
+        InvalidInput: see `Study.load` and `Study.run`.
+    """
+    import typer
+
+    study = Study.load(file)
+    source = Path(file)
+    folder = source.with_name(f"{source.stem}-study") if out is None else out
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        result = study.run(
+            folder,
+            workers=workers,
+            scheduler=scheduler,
+            retry_failed=retry_failed,
+            progress=not output.quiet,
+        )
+    except KeyboardInterrupt:
+        done = f"{len(StudyResult(folder))} of {len(study)} rows are in {folder}"
+        again = f"the same command goes on: {shlex.join(command)}"
+        err_console.print(f"ffsr-plan: interrupted; {done}; {again}", style="red", soft_wrap=True)
+        raise typer.Exit(INTERRUPTED) from None
+    _show(result, [], output)
+    return result.faults > 0
+
+
+def report_study(
+    directory: str, out: str | None, csv: str | None, parquet: str | None, output: Output
+) -> None:
+    """Show the tables of a study, and write its report.
+
+    Args:
+        directory: of the study.
+        out: directory for page and pictures, or None for one in that of the study.
+        csv: path of a CSV table, or None.
+        parquet: path of a Parquet table, or None.
+        output: where tables are shown.
+
+    Raises:
+        InvalidInput: no study, or a file that cannot be written.
+    """
+    result = StudyResult(directory)
+    files = result.write_report(Path(directory) / "report" if out is None else out)
+    for path, write in ((csv, result.to_csv), (parquet, result.to_parquet)):
+        if path is not None:
+            write(path)
+            files.append(Path(path))
+    _show(result, files, output)
+
+
+def _show(result: StudyResult, files: Sequence[Path], output: Output) -> None:
+    from ffsr_plan.studies.report.report_files import sentences
+    from ffsr_plan.studies.report.tables import study_tables
+
+    rows = result.rows()
+    tables = study_tables(rows, result.axes) if rows else []
+
+    def readable() -> Iterator[RenderableType]:
+        yield from map(_printed, tables)
+        yield from sentences(rows)
+        if files:
+            yield f"Written: {', '.join(map(str, files))}"
+        else:
+            drawn = f"`ffsr-plan study report {result.directory}` draws them"
+            yield f"Rows are in {result.database}; {drawn}."
+
+    def data() -> dict[str, Any]:
+        shown = [
+            {"title": title, "rows": [dict(zip(headings, cells, strict=True)) for cells in body]}
+            for title, headings, body, _ in tables
+        ]
+        return {
+            "study": {
+                "directory": str(result.directory),
+                "rows": len(rows),
+                "plans": result.plans,
+                "faults": result.faults,
+                "digest": result.digest(),
+            },
+            "tables": shown,
+            "files": [str(path) for path in files],
+        }
+
+    output.show(readable, data)
+
+
+def _printed(table: Table) -> RenderableType:
+    """A table for a terminal of 80 columns; the page has the columns that are left out."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table as Printed
+
+    made = Printed(
+        title=table.title,
+        title_justify="left",
+        box=SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+        pad_edge=False,
+    )
+    left_out = [k for k, name in enumerate(table.headings) if name in _LEFT_OUT]
+    for k, heading in enumerate(table.headings):
+        if k not in left_out:
+            side: Any = "left" if k < table.texts else "right"
+            made.add_column(heading, justify=side, overflow="fold", no_wrap=k >= table.texts)
+    for cells in table.rows:
+        made.add_row(*(cell for k, cell in enumerate(cells) if k not in left_out))
+    return made
