@@ -21,6 +21,7 @@ from ffsr_plan.scene.scene import Scene
 from ffsr_plan.scene.shapes.obstacle_shapes import Box
 
 MASSES = (2300, 1000, 500, 300, 250, 200, 150)  # [kg]
+LIGHT = 300  # [kg]
 MOUNT = 0.32  # [m] of the arm's root above the middle of the bus
 CENTER = (-0.041018, -0.00014, MOUNT + 0.049974)  # of mass of the bus [m]
 START = np.array([0.0, -1.30, 0.0, -2.60, 0.0, 1.50, 0.0])
@@ -75,7 +76,7 @@ def draw_servicing(rng: np.random.Generator, number: int) -> Draft:
     place = np.array([0.46, 0.0, 0.96 + MOUNT]) + shift
     tables = _floating(mass, joints(robot, start), joints(robot, goal))
     tables["obstacles"] = [box((0.52, 0.60, 0.12), place, "target", turn)]
-    if first or number % 2:  # at the straight way's end a light bus would leave the goal blocked
+    if mass <= LIGHT and (first or number % 2):  # as the straight way would leave the goal blocked
         tables["goal"]["attitude"] = [0.0, 0.0, 0.0]
     back = ", back at its attitude" if "attitude" in tables["goal"] else ""
     return Draft(f"a bus of {mass} kg{back}", tables, 0.01)
@@ -89,7 +90,11 @@ def draw_remounted(rng: np.random.Generator, number: int) -> Draft | None:
         number: of the problem in the family.
     """
     mass = MASSES[1:6][number // 2 % 5]
-    return _shelf(rng, mass) if number % 2 else _cage(rng, mass, number == 0)
+    draft = _shelf(rng, mass) if number % 2 else _cage(rng, mass, number == 0)
+    if draft is None or number % 5 < 4:
+        return draft
+    draft.tables["goal"]["attitude"] = [0.0, 0.0, 0.0]
+    return draft._replace(title=f"{draft.title}, back at its attitude")
 
 
 def _floating(mass: int, start: dict[str, float], goal: dict[str, float]) -> Tables:
@@ -107,7 +112,6 @@ def _cage(rng: np.random.Generator, mass: int, first: bool) -> Draft:
     moved = CAGE + rng.normal(0.0, 0.0 if first else 0.03, CAGE.shape) + (0.0, 0.0, MOUNT)
     other = 0.0 if first else rng.normal(0.0, 0.1, 7)
     tables = _floating(mass, joints(robot, CAGE_START), joints(robot, CAGE_GOAL + other))
-    tables["goal"]["attitude"] = [0.0, 0.0, 0.0]
     tables["obstacles"] = spheres(moved, np.full(len(moved), 0.2 if first else 0.18))
     return Draft(f"a cage of spheres, a bus of {mass} kg", tables, 0.01)
 
@@ -149,7 +153,6 @@ def _shelf(rng: np.random.Generator, mass: int) -> Draft | None:
     if len(ends) < 2:
         return None
     tables = _floating(mass, *(joints(robot, q) for _, q in ends))
-    tables["goal"]["attitude"] = [0.0, 0.0, 0.0]
     tables["obstacles"] = parts
     return Draft(f"shelves, a bus of {mass} kg", tables, 0.01)
 

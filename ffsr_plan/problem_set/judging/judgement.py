@@ -50,6 +50,16 @@ class Judgement:
 
 
 def judge(given: BenchProblem, trajectory: Trajectory) -> Judgement:
+    """Judge a trajectory for a problem of the set; see `judged`.
+
+    Args:
+        given: the problem.
+        trajectory: what a planner found.
+    """
+    return judged(given.name, given.problem, trajectory)
+
+
+def judged(name: str, problem: Problem, trajectory: Trajectory) -> Judgement:
     """Judge a trajectory by `certify`; nothing that it says of itself is trusted.
 
     It has to begin at the start and end at the goal, stay within joint limits and window, take the
@@ -57,20 +67,20 @@ def judge(given: BenchProblem, trajectory: Trajectory) -> Judgement:
     proven free all along.
 
     Args:
-        given: the problem.
+        name: of the problem.
+        problem: the problem.
         trajectory: joint values over time; where thrusters move the base, its positions; where
             wheels hold it, its attitudes.
     """
-    problem = given.problem
     try:
         refused, report = _looked_at(problem, trajectory)
     except FfsrPlanError as error:
-        return Judgement(given.name, False, str(error))
+        return Judgement(name, False, str(error))
     if refused or report is None:
-        return Judgement(given.name, False, refused)
+        return Judgement(name, False, refused)
     found: Figures = figures_of(problem, report)
     return Judgement(
-        given.name,
+        name,
         True,
         "",
         found.length,
