@@ -79,7 +79,7 @@ def draw_servicing(rng: np.random.Generator, number: int) -> Draft:
     if mass <= LIGHT and (first or number % 2):  # as the straight way would leave the goal blocked
         tables["goal"]["attitude"] = [0.0, 0.0, 0.0]
     back = ", back at its attitude" if "attitude" in tables["goal"] else ""
-    return Draft(f"a bus of {mass} kg{back}", tables, 0.01)
+    return Draft(f"a bus of {mass} kg{back}", tables, 0.004)
 
 
 def draw_remounted(rng: np.random.Generator, number: int) -> Draft | None:

@@ -51,7 +51,7 @@ FAMILIES: dict[str, Family] = {
         mounted.REMOUNTED,
     )
 }
-_DRAWS = 3000
+_DRAWS = 1000
 
 
 def made(family: Family, number: int, folder: Path = DATA) -> BenchProblem:
