@@ -130,7 +130,10 @@ def accepted(draft: Draft, folder: Path) -> tuple[Problem, str] | None:
     still = np.zeros((2, 3))
     clearances = prover.clearances(np.array([0, 1]), still)
     both = float(clearances[0]), float(clearances[1])
-    free = prover.certify(0, still[0], still[0], both).free and prover.links.verdicts()[0].free
+    apart = prover.links.verdicts()[0].free
+    if not apart and problem.lattice is not None and not problem.lattice.postures:
+        return None  # a lattice without posture axes has no other joint motion
+    free = prover.certify(0, still[0], still[0], both).free and apart
     if free and draft.blocked:
         return None
     return problem, FREE if free else BLOCKED

@@ -29,9 +29,9 @@ def draw(rng: np.random.Generator, number: int) -> Draft:
         number: of the problem in the family.
     """
     name = (SPATIAL, SATELLITE)[number % 2]
-    robot, count = robot_of(name), int(rng.integers(20, 61))
+    robot, count = robot_of(name), int(rng.integers(15, 46))
     centers = rng.uniform([2.0, -2.5, -2.5], [8.0, 2.5, 2.5], (count, 3))
-    radii = rng.uniform(0.12, 0.4, count)
+    radii = rng.uniform(0.1, 0.35, count)
     chosen = rng.integers(0, 3, 2)
     start, goal = (
         posture(robot, POSTURES[name][int(k)]) + rng.normal(0.0, 0.2, robot.nd) for k in chosen
@@ -56,4 +56,4 @@ def draw(rng: np.random.Generator, number: int) -> Draft:
     return Draft(f"{robot.name} past {count} spheres{kind}", tables)
 
 
-FAMILY = Family("flights", "flights of 10 m in space past 20 to 60 spheres", 30, 10.0, draw)
+FAMILY = Family("flights", "flights of 10 m in space past 15 to 45 spheres", 30, 10.0, draw)
