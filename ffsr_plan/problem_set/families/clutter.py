@@ -10,6 +10,7 @@ from ffsr_plan.problem_set.families.drafts import (
     Draft,
     Family,
     joints,
+    nearest_turn,
     posture,
     robot_of,
     spheres,
@@ -48,6 +49,7 @@ def _in_space(rng: np.random.Generator) -> Draft:
     names = sorted(robot.postures)
     start = posture(robot, names[int(rng.integers(len(names)))]) + rng.normal(0.0, 0.2, robot.nd)
     goal = rng.uniform([-2.5, -2.8, -2.5, -2.0, -2.0, -1.0], [2.5, 0.2, 2.5, 2.0, 2.0, 1.0])
+    goal = nearest_turn(robot, start, goal)
     tables = {
         "robot": {"urdf": SATELLITE, "mode": "free-flying"},
         "start": {"joints": joints(robot, start)},

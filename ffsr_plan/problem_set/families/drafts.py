@@ -155,6 +155,19 @@ def posture(robot: SpaceRobot, name: str) -> Array:
     return np.array([named.get(joint, 0.0) for joint in robot.joint_names])
 
 
+def nearest_turn(robot: SpaceRobot, start: Array, goal: Array) -> Array:
+    """(nd,) the joint values of a posture that are nearest to others, whole turns apart.
+
+    Args:
+        robot: the robot.
+        start: (nd,) the others [rad or m].
+        goal: (nd,) values of the posture [rad or m].
+    """
+    turned = goal + 2.0 * np.pi * np.round((start - goal) / (2.0 * np.pi))
+    allowed = ~robot.prismatic & (turned >= robot.lower) & (turned <= robot.upper)
+    return np.where(allowed, turned, goal)
+
+
 def angles(vector: Sequence[float] | Array) -> Any:  # noqa: ANN401 - a list of numbers
     """ZYX angles of a rotation vector (3,) [rad]."""
     return numbers(rotations.to_angles(rotations.exp(np.asarray(vector, dtype=np.float64))))

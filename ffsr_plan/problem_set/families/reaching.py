@@ -12,6 +12,7 @@ from ffsr_plan.problem_set.families.drafts import (
     box,
     clear,
     joints,
+    nearest_turn,
     posture,
     robot_of,
 )
@@ -48,11 +49,12 @@ def draw(rng: np.random.Generator, number: int) -> Draft | None:
     for values in postures[near]:
         q = robot.configuration(joints=joints(robot, values))
         if clear(robot, scene, q, 0.02):
-            start = joints(robot, posture(robot, "stowed"))
+            start = posture(robot, "stowed")
+            goal = nearest_turn(robot, start, values)  # as no other is the straight way
             made = {
                 "robot": {"urdf": SATELLITE, "mode": "free-floating"},
-                "start": {"joints": start},
-                "goal": {"joints": joints(robot, values)},
+                "start": {"joints": joints(robot, start)},
+                "goal": {"joints": joints(robot, goal)},
                 "obstacles": tables,
             }
             panel = " with a panel" if number % 2 else ""

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ffsr_plan.core.checks import number
-from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.checks import number, unknown_name
 from ffsr_plan.plans.planner_registry import PLANNERS
 from ffsr_plan.problem_set.judging.judged_folder import row_of
 from ffsr_plan.problem_set.judging.judgement import Judgement
@@ -19,6 +18,7 @@ from ffsr_plan.problem_set.judging.result_files import (
     write_judged,
     write_results,
 )
+from ffsr_plan.problem_set.running import ompl_peers
 from ffsr_plan.problem_set.running.bench_sources import BenchSource
 from ffsr_plan.problem_set.running.timed_planner import TimedPlanner
 from ffsr_plan.problem_set.set_index import ProblemSet
@@ -41,8 +41,9 @@ def planner_named(name: str | None) -> Any:  # noqa: ANN401 - any planner of a s
     """
     if name is None or name == "default" or name in PLANNERS:
         return TimedPlanner(None if name == "default" else name)
-    known = ", ".join(["default", *PLANNERS])
-    raise InvalidInput("planner", name, known)
+    if name in ompl_peers.PLANNERS:
+        return ompl_peers.OmplPlanner(*ompl_peers.PLANNERS[name])
+    raise unknown_name("planner", name, ["default", *PLANNERS, *ompl_peers.PLANNERS])
 
 
 def run(
