@@ -40,12 +40,14 @@ class Draft(NamedTuple):
         tables: of a scenario file.
         room: clearance that start and goal have to have [m].
         blocked: whether the straight motion must not be free.
+        apart: whether links must not touch one another along the straight motion.
     """
 
     title: str
     tables: Tables
     room: float = 0.02
     blocked: bool = True
+    apart: bool = False
 
 
 @dataclass(frozen=True)
@@ -131,8 +133,9 @@ def accepted(draft: Draft, folder: Path) -> tuple[Problem, str] | None:
     clearances = prover.clearances(np.array([0, 1]), still)
     both = float(clearances[0]), float(clearances[1])
     apart = prover.links.verdicts()[0].free
-    if not apart and problem.lattice is not None and not problem.lattice.postures:
-        return None  # a lattice without posture axes has no other joint motion
+    no_other = problem.lattice is not None and not problem.lattice.postures
+    if not apart and (draft.apart or no_other):  # joints have no other way on such a lattice
+        return None
     free = prover.certify(0, still[0], still[0], both).free and apart
     if free and draft.blocked:
         return None

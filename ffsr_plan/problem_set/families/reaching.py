@@ -58,7 +58,7 @@ def draw(rng: np.random.Generator, number: int) -> Draft | None:
                 "obstacles": tables,
             }
             panel = " with a panel" if number % 2 else ""
-            return Draft(f"beside a box{panel}", made, 0.015)
+            return Draft(f"beside a box{panel}", made, 0.015, apart=True)
     return None
 
 
