@@ -119,6 +119,6 @@ def schema(
         import json
 
         from ffsr_plan.core.checks import one_of
-        from ffsr_plan.problem_set.schemas import SCHEMAS
+        from ffsr_plan.problem_set.judging.schemas import SCHEMAS
 
         typer.echo(json.dumps(SCHEMAS[one_of("kind", kind, list(SCHEMAS))](), indent=2))
