@@ -43,11 +43,15 @@ def progress_shown(total: int, wanted: bool) -> Iterator[OnProgress]:
     ) as bar:
         task = bar.add_task("plans", total=total)
 
+        begun = False
+
         def tell(progress: StudyProgress) -> None:
-            if bar.tasks[0].completed == 0 and progress.done:
-                bar.reset(task, completed=progress.done)  # rows of earlier runs took no time now
+            nonlocal begun
+            if not begun:  # rows of earlier runs took no time in this one
+                bar.reset(task, completed=progress.done)
+                begun = True
             workers = "1 worker" if progress.workers == 1 else f"{progress.workers} workers"
-            failed = f", {progress.failed} failed" if progress.failed else ""
+            failed = f", {progress.failed} without a plan" if progress.failed else ""
             bar.update(task, completed=progress.done, description=f"plans, {workers}{failed}")
             if progress.notice and wanted:
                 console.print(f"ffsr-plan: {progress.notice}", soft_wrap=True)

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 import ffsr_plan as fp
+from ffsr_plan.studies.engines import dask_cluster
 from tests.helpers.small_studies import Deadly, Slow, small_problem, small_study
 
 ROOT = Path(__file__).parents[2]
@@ -61,10 +62,14 @@ def test_there_is_one_row_with_its_plan_for_each_point_of_the_grid(whole):
         assert row["least_clearance"] == plan.certificate.least_clearance
 
 
-@pytest.mark.parametrize("engine", ["processes", "dask"])
+@pytest.mark.parametrize("engine", ["processes", "cluster"])
 def test_several_workers_give_the_same_rows_bit_for_bit(whole, tmp_path, engine, monkeypatch):
     monkeypatch.setenv("FFSR_TEST_REST", "0.05")
-    found = small_study().run(tmp_path, workers=2, engine=engine)
+    if engine == "cluster":
+        with dask_cluster.local(2) as client:
+            found = small_study().run(tmp_path, scheduler=client)
+    else:
+        found = small_study().run(tmp_path, workers=2, engine=engine)
     assert found.digest() == whole.digest()
     assert len({row["worker"] for row in found.rows()}) == 2
 
@@ -96,8 +101,10 @@ def test_a_study_killed_at_random_ends_with_the_same_rows(whole, tmp_path):
     found = fp.StudyResult(tmp_path)
     again = {row["key"]: row["finished"] for row in found.rows()}
     assert found.digest() == whole.digest()
-    small_study().run(tmp_path)
-    assert {row["key"]: row["finished"] for row in found.rows()} == again  # nothing twice
+    told = []
+    small_study().run(tmp_path, on_progress=told.append)
+    assert [each.done for each in told] == [24]  # nothing twice
+    assert {row["key"]: row["finished"] for row in found.rows()} == again
 
 
 def test_ctrl_c_keeps_what_came_back_and_the_next_run_goes_on(whole, tmp_path):

@@ -67,6 +67,7 @@ def test_the_grid_has_each_combination_once(load):
     assert len({task.key for task in study.grid.tasks()}) == 40
     points = [dict(source.axes) for source in study.grid.sources]
     assert points[0] == {"clouds.0.seed": 0, "objective.delta": 0.0}
+    assert points[1] == {"clouds.0.seed": 0, "objective.delta": 0.1}
     assert points[-1] == {"clouds.0.seed": 4, "objective.delta": 0.1}
     assert [planner.name for planner in study.grid.planners] == ["ant-system", "exact"]
     assert study.grid.planners[0].planner == fp.AntSystem(ants=3, cycles=2)

@@ -88,7 +88,8 @@ def main() -> None:
         assert begun(f"{folder}/alone", arguments.scenes, "").wait() == 0
         alone = fp.StudyResult(f"{folder}/alone")
         seconds = time.perf_counter() - begin
-        lines.append(["1, left alone", "", str(len(alone)), str(alone.plans), f"{seconds:.0f}", "-"])
+        counts = [str(len(alone)), str(alone.plans)]
+        lines.append(["1, left alone", "", *counts, f"{seconds:.0f}", "-"])
         for seed, engine in enumerate(("processes", "dask")):
             place, begin = f"{folder}/{engine}", time.perf_counter()
             after = killed(place, engine, arguments.scenes, arguments.kills, seed)

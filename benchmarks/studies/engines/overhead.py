@@ -87,7 +87,10 @@ def main() -> None:
             "cores stand for a cluster. Start and end are those of the engine: processes, "
             "imports, the first connection. Overhead is (time x workers - sum of the tasks' own "
             "times) / sum of the tasks' own times, after the start; tasks of less than a second "
-            "are sent several at a time.",
+            "are sent several at a time. Workers of `processes` start, and all workers load the "
+            "package, with their first job, in that time. The machine has two cores and other "
+            "work: eight workers that judge 10 000 trajectories wait for a core, which is most "
+            "of the last line.",
             table(
                 [
                     "engine", "workers", "tasks", "task [s]", "start and end [s]", "time [s]",

@@ -12,7 +12,7 @@ import threading
 import time
 import uuid
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from ffsr_plan.core.errors import InvalidInput
@@ -56,13 +56,16 @@ class DaskCluster:
         self._lock = threading.Lock()
         self._counted, self._count = -float("inf"), 1
         self._losses = 0
-        client.subscribe_topic("all", self._hear)
-        client.register_plugin(_study_plugin(self._name, packed(grid)), name=self._name)
+        plugin = _study_plugin(self._name, packed(grid))
+        with _answering():
+            client.subscribe_topic("all", self._hear)
+            client.register_plugin(plugin, name=self._name)
 
     def slots(self) -> int:
         """The number of workers, at least 1; after a loss it is asked for each time."""
         if self._losses or time.monotonic() - self._counted > _COUNTING:
-            there, self._counted = len(self._client.nthreads()), time.monotonic()
+            with _answering():
+                there, self._counted = len(self._client.nthreads()), time.monotonic()
             self._count, self._losses = max(1, there), max(0, self._losses - 1)
             if there < self._workers:
                 self._client.cluster.scale(self._workers)
@@ -106,9 +109,10 @@ class DaskCluster:
 
     def close(self) -> None:
         """Forget the study on the cluster; jobs that have not begun never will."""
-        self._client.unsubscribe_topic("all")
-        self._client.cancel(list(self._futures.values()), force=True)
-        self._client.unregister_worker_plugin(self._name)
+        with suppress(Exception):  # of a scheduler that is lost, which is told elsewhere
+            self._client.unsubscribe_topic("all")
+            self._client.cancel(list(self._futures.values()), force=True)
+            self._client.unregister_worker_plugin(self._name)
         self._futures.clear()
 
     def _key(self, number: int) -> str:
@@ -127,6 +131,19 @@ class DaskCluster:
                 known = self._lost.setdefault(key, []) if key.startswith(self._name) else [worker]
                 if worker not in known:
                     known.append(worker)
+
+
+@contextmanager
+def _answering() -> Iterator[None]:
+    """In the body, a scheduler that does not answer becomes an error that says so.
+
+    Raises:
+        InvalidInput: it does not.
+    """
+    try:
+        yield
+    except OSError as error:  # Dask's errors of communication are of this class
+        raise InvalidInput("scheduler", str(error), _LOST) from None
 
 
 def _study_plugin(name: str, blob: bytes) -> WorkerPlugin:
@@ -198,7 +215,7 @@ def local(workers: int) -> Iterator[Client]:
             cluster = LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",  # any free port, and for nobody else
                 memory_limit=0,  # without it, Dask would kill workers by a limit of its own
                 silence_logs=50,
             )

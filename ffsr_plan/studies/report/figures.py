@@ -172,4 +172,4 @@ def _line(k: int) -> dict[str, Any]:
 
 
 def _legend(ax: Axes) -> None:
-    ax.legend(frameon=False, fontsize=8, loc="lower right")
+    ax.legend(frameon=False, fontsize=8, loc="best")
