@@ -7,7 +7,7 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from ffsr_plan.core.checks import one_of
+from ffsr_plan.core.checks import one_of, text
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import read_text, write_text
 from ffsr_plan.formats.numpy_trajectories import read_numpy, write_numpy
@@ -91,8 +91,11 @@ class BestPlans:
 
         Args:
             name: of the problem.
+
+        Raises:
+            InvalidInput: a name that is no text.
         """
-        return self._plans.get(name)
+        return self._plans.get(text("name", name))
 
     def trajectory(self, name: str) -> Trajectory:
         """The trajectory of the best plan of a problem.
@@ -124,8 +127,8 @@ class BestPlans:
             digest = file_digest(path)
         self._plans[row.problem] = BestPlan(**(asdict(row) | {"sha256": digest}))
         lines = [json.dumps(asdict(self._plans[name])) for name in sorted(self._plans)]
-        text = f'{{\n  "format": {json.dumps(FORMAT)},\n  "plans": [\n    '
-        write_text("best plans", self.folder / BEST, text + ",\n    ".join(lines) + "\n  ]\n}\n")
+        head = f'{{\n  "format": {json.dumps(FORMAT)},\n  "plans": [\n    '
+        write_text("best plans", self.folder / BEST, head + ",\n    ".join(lines) + "\n  ]\n}\n")
 
     def _file(self, name: str) -> Path:
         return self.folder / "best" / f"{name}.npz"

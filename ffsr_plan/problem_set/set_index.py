@@ -12,6 +12,7 @@ from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import read_text
 from ffsr_plan.problem_set.bench_problem import BenchProblem, read_problem
+from ffsr_plan.problem_set.best_plans import BestPlans
 
 VERSION = "1"
 INDEX, INDEX_FORMAT = "index.json", "ffsr-plan problem index 1"
@@ -62,6 +63,8 @@ class ProblemSet:
         """
         if family is None:
             return list(self._entries)
+        if not isinstance(family, (str, list, tuple)):
+            raise InvalidInput("family", family, "a name, a list of names, or None")
         wanted = [family] if isinstance(family, str) else list(family)
         for each in wanted:
             one_of("family", each, list(self.families))
@@ -86,6 +89,11 @@ class ProblemSet:
         """
         entry = self.entry(name)
         return read_problem(self.folder / entry["file"], self.folder, entry["sha256"])
+
+    @property
+    def best(self) -> BestPlans:
+        """The best plans known: `get(name)` has the figures, `trajectory(name)` the motion."""
+        return BestPlans(self.folder)
 
     def __len__(self) -> int:
         return len(self._entries)

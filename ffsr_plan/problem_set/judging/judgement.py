@@ -10,7 +10,7 @@ import numpy as np
 from ffsr_plan.certification.judgement import certify
 from ffsr_plan.certification.trajectory_report import TrajectoryReport
 from ffsr_plan.core.arrays import Array
-from ffsr_plan.core.errors import FfsrPlanError
+from ffsr_plan.core.errors import FfsrPlanError, InvalidInput
 from ffsr_plan.core.rotations import angle_between, to_angles
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.problem_set.bench_problem import BenchProblem
@@ -50,12 +50,24 @@ class Judgement:
 
 
 def judge(given: BenchProblem, trajectory: Trajectory) -> Judgement:
-    """Judge a trajectory for a problem of the set; see `judged`.
+    """Judge a trajectory for a problem of the set, by `certify`; nothing it says is trusted.
+
+    It has to begin at the start and end at the goal (within 1e-3 m and rad), stay within joint
+    limits and window, take the problem's time where bodies move, and be proven free all along with
+    the base reacting. Base poses that it states where the base reacts have to be those that
+    conservation of momentum leads to.
 
     Args:
         given: the problem.
         trajectory: what a planner found.
+
+    Raises:
+        InvalidInput: no problem of the set, or no trajectory.
     """
+    if not isinstance(given, BenchProblem):
+        raise InvalidInput("given", given, "a BenchProblem, such as ProblemSet()['traps/07']")
+    if not isinstance(trajectory, Trajectory):
+        raise InvalidInput("trajectory", trajectory, "a Trajectory")
     return judged(given.name, given.problem, trajectory)
 
 
