@@ -78,13 +78,8 @@ class BestPlans:
         Raises:
             InvalidInput: a file of another format.
         """
-        self.folder, path = folder, folder / BEST
-        self._plans: dict[str, BestPlan] = {}
-        if path.exists():
-            data = json.loads(read_text("best plans", path))
-            if data.get("format") != FORMAT:
-                raise InvalidInput(f"best plans '{path}'", data.get("format"), f"'{FORMAT}'")
-            self._plans = {row["problem"]: BestPlan(**row) for row in data["plans"]}
+        self.folder = folder
+        self._plans = _read(folder / BEST)
 
     def get(self, name: str) -> BestPlan | None:
         """What is known of a problem, or None if nobody looked.
@@ -119,6 +114,7 @@ class BestPlans:
             row: its figures, without a digest.
             trajectory: of a better plan; None leaves the one that is there.
         """
+        self._plans = _read(self.folder / BEST)  # another process may have written meanwhile
         digest = row.sha256
         if trajectory is not None:
             path = self._file(row.problem)
@@ -132,6 +128,16 @@ class BestPlans:
 
     def _file(self, name: str) -> Path:
         return self.folder / "best" / f"{name}.npz"
+
+
+def _read(path: Path) -> dict[str, BestPlan]:
+    """The rows of a file; none where there is no file."""
+    if not path.exists():
+        return {}
+    data = json.loads(read_text("best plans", path))
+    if data.get("format") != FORMAT:
+        raise InvalidInput(f"best plans '{path}'", data.get("format"), f"'{FORMAT}'")
+    return {row["problem"]: BestPlan(**row) for row in data["plans"]}
 
 
 def file_digest(path: Path) -> str:

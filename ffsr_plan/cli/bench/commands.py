@@ -51,6 +51,9 @@ def run(
     out: Annotated[
         str, typer.Option(metavar="DIRECTORY", help="For results; a run that was cut goes on.")
     ] = "bench-results",
+    force: Annotated[  # of no account, as in `study`: nothing that is there is replaced
+        bool, typer.Option("--force", hidden=True)
+    ] = False,
     quiet: Quiet = False,
     as_json: Json = False,
 ) -> None:

@@ -91,8 +91,10 @@ def improved(given: BenchProblem, known: BestPlans, seconds: float) -> str:
     old = known.get(given.name) or BestPlan(given.name, *bound_of(problem))
     seed = 0 if not old.tried else int(old.tried * 1000) % 100_000
     begin = time.perf_counter()
-    unsolved = old.tried > 0.0 and old.objective is None and problem.lattice is not None
-    planner = "portfolio" if unsolved else None  # trees find what a lattice does not hold
+    unsolved = old.tried > 0.0 and old.objective is None
+    lattice = problem.lattice
+    off_lattice = unsolved and lattice is not None and lattice.progress is None
+    planner = "portfolio" if off_lattice else None  # trees find what a lattice does not hold
     try:
         made = plan(problem, planner, seed, time_limit=seconds, on_interrupt="raise")
     except FfsrPlanError as error:
