@@ -129,8 +129,9 @@ def test_costs_over_time_are_infinite_before_the_first_path(tmp_path):
         row("traps/01", curve=((1.0, 4.0),)),
         row("traps/02", 1.0, None),
     ]
-    found = cost_over_time(rows, best, np.array([0.5, 1.0, 2.0]))[:, 1]
-    assert found.tolist() == [np.inf, 3.0, 2.0]
+    found = cost_over_time(rows, best, np.array([0.5, 1.0, 2.0]))
+    assert found[:, 1].tolist() == [np.inf, 3.0, 2.0]
+    assert found[:, 2].tolist() == [np.inf, np.inf, np.inf]  # a third has no path
 
 
 def test_late_paths_are_not_in_time():
