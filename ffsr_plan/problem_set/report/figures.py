@@ -108,7 +108,7 @@ def _cost(judged: Sequence[Judged], best: BestPlans) -> Figure:
     ax.set_xscale("log")
     ax.set_ylim(0.98, min(1.02 * top, 3.0))
     ax.set_xlabel("time [s]")
-    ax.set_ylabel("F relative to the best known: median and quartiles")
+    ax.set_ylabel("F / best known, median and quartiles")
     _legend(figure, ax)
     return figure
 
