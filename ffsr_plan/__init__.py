@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from ffsr_plan.lattice.certificate import Certificate, Counts
     from ffsr_plan.lattice.layered_lattice import LayeredLattice
     from ffsr_plan.lattice.roadmap import Roadmap
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.certified_plan import Plan
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
@@ -119,6 +120,7 @@ if TYPE_CHECKING:
     from ffsr_plan.studies.running import StudyProgress
     from ffsr_plan.studies.study import Study
     from ffsr_plan.studies.study_result import StudyResult
+    from ffsr_plan.timed_proof.unproven_flight import UnprovenFlight
     from ffsr_plan.trajectory.trajectory import Trajectory
     from ffsr_plan.tree_search.tree_planner import TreePlanner
     from ffsr_plan.verification.flights.verify_flight import FlightReport
@@ -147,6 +149,7 @@ __all__ = [
     "Cycle",
     "Cylinder",
     "DebrisCloud",
+    "Departure",
     "Drift",
     "EdgeProof",
     "Ellipsoid",
@@ -229,6 +232,7 @@ __all__ = [
     "Tumble",
     "UncheckedLinks",
     "UnprovenCurve",
+    "UnprovenFlight",
     "UnprovenPath",
     "Verdict",
     "WheelMomentum",
@@ -294,6 +298,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
         "WideTurns",
         "WorkerDied",
     ),
+    "timed_proof.unproven_flight": ("UnprovenFlight",),
     "curves.curved_motion": ("CurvedMotion",),
     "curves.smooth_curve": ("CurvePoints", "SmoothCurve"),
     "display.live.live_view": ("LiveView",),
@@ -309,6 +314,7 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "lattice.certificate": ("Certificate", "Counts"),
     "lattice.layered_lattice": ("LayeredLattice",),
     "lattice.roadmap": ("Roadmap",),
+    "meetings.departure": ("Departure",),
     "meetings.meeting": ("Meeting",),
     "planning.certified_plan": ("Plan",),
     "planning.flights": ("SmoothFlight", "TimedPlan"),

@@ -73,6 +73,10 @@ class BodyMotion(Protocol):
         """Bound on the angle that the body turns by, along its way, between two times [rad]."""
         ...
 
+    def later(self, time: float) -> BodyMotion:
+        """The motion whose time zero is a later instant [s]."""
+        ...
+
 
 @settings
 class Drift:
@@ -113,6 +117,10 @@ class Drift:
     def turned(self, begin: float, end: float) -> float:
         """Zero."""
         return 0.0
+
+    def later(self, time: float) -> Drift:
+        """The same motion: its velocity is constant."""
+        return self
 
 
 @settings
@@ -156,3 +164,7 @@ class Spin:
     def turned(self, begin: float, end: float) -> float:
         """Angle between two times [rad]: exact."""
         return float(np.linalg.norm(self.rate)) * (end - begin)
+
+    def later(self, time: float) -> Spin:
+        """The same motion: its rate is constant in the body's axes."""
+        return self

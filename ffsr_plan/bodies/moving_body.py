@@ -121,6 +121,23 @@ class MovingBody:
         own = finite_array("place", place, (3,), FARTHEST)
         return np.asarray(position + rotations.matrix(turn) @ own)
 
+    def later(self, time: float) -> MovingBody:
+        """The same body from a later instant on.
+
+        Args:
+            time: [s], which becomes time zero; its motion is known for longer.
+
+        Raises:
+            InvalidInput: a time from which on the motion is not known.
+        """
+        (place,), (turn,) = self.poses([time])
+        if time >= self.motion.known_until:
+            raise InvalidInput("time", time, f"less than {self.motion.known_until:g} s")
+        motion = self.motion.later(time)
+        if motion.tells_world_poses:
+            return MovingBody(self.shapes, motion, name=self.name)
+        return MovingBody(self.shapes, motion, place, turn, self.name)
+
     def shapes_at(self, time: float, title: str = "") -> tuple[Any, ...]:
         """Its shapes in the world at a time, named after it.
 

@@ -2,11 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from ffsr_plan.core.arrays import Array
+
+
+class Mover(Protocol):
+    """A body that moves, or debris."""
+
+    @property
+    def speed(self) -> float:
+        """The largest speed of any of its points [m/s]."""
+
+
+class Timetable(Protocol):
+    """When a path of m edges is where: what a proof past bodies that move asks of a pace."""
+
+    def instants(self, places: Array) -> Array:
+        """(...) times [s] at places (...) from 0 to m, which do not fall from start to goal."""
+
+    def is_even(self, edge: int) -> bool:
+        """Whether progress is uniform in time over an edge."""
 
 
 @dataclass(frozen=True)
@@ -69,3 +89,17 @@ class Pace:
         """
         nearer = min(edge, self.edges - 1 - edge) / self.edges
         return self.ramp == 0.0 or nearer >= 0.5 * self.ramp / (1.0 - self.ramp)
+
+
+def slip(bodies: Sequence[Mover], clearance: float) -> float:
+    """Time by which a run may be early or late and is still free of bodies that move [s].
+
+    The robot is then where it was proven free, and no body has come nearer than it can move in that
+    time.
+
+    Args:
+        bodies: the bodies, and debris.
+        clearance: proven all along the run [m].
+    """
+    fastest = max((body.speed for body in bodies), default=0.0)
+    return clearance / fastest if fastest > 0.0 else np.inf

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -88,6 +89,11 @@ class PoseFunction:
         """Bound on the angle between two times, along the way [rad]."""
         return self.turn_rate * (end - begin)
 
+    def later(self, time: float) -> PoseFunction:
+        """The motion whose time zero is a later instant [s]."""
+        function = partial(_told_later, self.function, time)
+        return replace(self, function=function, known_until=self.known_until - time)
+
     def _check_speeds(self, times: Array, places: Array, turns: Array) -> None:
         """Raise `InvalidInput` for poses that no motion of the stated speeds passes."""
         spans = np.abs(np.diff(times))
@@ -105,3 +111,8 @@ class PoseFunction:
                 found = float(ways[k] / spans[k]) if spans[k] else math.inf
                 where = f"the {found:g} that the function shows at {times[k]:g} s, or more"
                 raise InvalidInput(name, most, where)
+
+
+def _told_later(function: PoseAt, by: float, time: float) -> tuple[ArrayLike, ArrayLike]:
+    """What a function of the time tells at a later one [s]."""
+    return function(time + by)

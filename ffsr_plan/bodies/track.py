@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -164,3 +164,7 @@ class Track:
         """Angle between two times, along the way [rad]: exact."""
         ways = np.interp([begin, end], self.times, self._ways[1])
         return float(ways[1] - ways[0])
+
+    def later(self, time: float) -> Track:
+        """The motion whose time zero is a later instant [s]; rows may then be before it."""
+        return replace(self, times=self.times - time)

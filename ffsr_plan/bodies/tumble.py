@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Any, ClassVar, NamedTuple
 
@@ -191,6 +191,11 @@ class Tumble:
         (rate,) = self._states(np.array([0.5 * (begin + end)]))[0]
         near = float(np.linalg.norm(rate)) * span + 0.25 * self.largest_acceleration * span**2
         return min(self.largest_rate * span, near)
+
+    def later(self, time: float) -> Tumble:
+        """The motion whose time zero is a later instant [s], with its angular velocity then."""
+        (rate,) = self.rates(np.array([time]))
+        return replace(self, rate=rate, known_until=self.known_until - time)
 
 
 def _quaternion(axes: Array) -> Array:

@@ -12,6 +12,7 @@ from ffsr_plan.certification.bus_mass import on_bus
 from ffsr_plan.certification.judgement import certify
 from ffsr_plan.certification.trajectory_report import TrajectoryReport
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.core.formatting import counted
 from ffsr_plan.formats.scenes.scene_files import read_scene
 from ffsr_plan.formats.trajectory_files import read_trajectory
 from ffsr_plan.robots.loading import load_robot
@@ -72,10 +73,11 @@ def certify_files(
     robot: RobotFile,
     scene: str | None,
     modes: Sequence[str],
+    tolerance: float = 1e-4,
     *,
     interpolation: str | None = None,
+    topic: str | None = None,
     frame: str | None = None,
-    tolerance: float = 1e-4,
 ) -> list[TrajectoryReport]:
     """Judge a trajectory in each of several modes.
 
@@ -84,9 +86,10 @@ def certify_files(
         robot: the robot's file.
         scene: path of the scene's file, or name of a scenario; None for no obstacles.
         modes: see `certify`.
-        interpolation: in place of what the file says.
-        frame: see `certify`.
         tolerance: see `certify`.
+        interpolation: in place of what the file says.
+        topic: of a bag, the only one that is read.
+        frame: see `certify`.
 
     Returns:
         A report for each mode.
@@ -94,7 +97,7 @@ def certify_files(
     Raises:
         InvalidInput: what is wrong in the files or options.
     """
-    given = read_trajectory(trajectory, interpolation)
+    given = read_trajectory(trajectory, interpolation, topic)
     obstacles = Scene() if scene is None else read_scene(scene)
     made = robot.robot()
     return [
@@ -104,10 +107,13 @@ def certify_files(
 
 def report_rows(report: TrajectoryReport) -> list[tuple[str, str]]:
     """Names and values of a report, for a table."""
-    samples, contact = report.samples, report.contact
+    samples, contact, pieces = report.samples, report.contact, report.trajectory.pieces
     yes = "yes, proven" if report.free else "NO: contact" if contact else "not proven"
     rows = [("free", yes), ("verdict", report.verdict())]
+    if not report.free:
+        rows.append(("proven free before", f"{report.proven_until:.9g} s"))
     if contact is not None:
+        rows.append(("contact", f"{contact.time:.9g} s"))
         rows.append(("base turned then", f"{np.degrees(contact.turn):.3f} degrees"))
     rows += [
         ("base turned at the end", f"{np.degrees(report.turn):.3f} degrees"),
@@ -115,7 +121,7 @@ def report_rows(report: TrajectoryReport) -> list[tuple[str, str]]:
         ("base moved at the end", f"{samples.shifts[-1]:.4f} m"),
         (f"drift of {report.frame} at the end", f"{report.drift:.4f} m"),
         ("drift at most", f"{report.largest_drift:.4f} m"),
-        ("trajectory", f"{report.trajectory.pieces} {report.trajectory.interpolation} pieces"),
+        ("trajectory", counted(pieces, f"{report.trajectory.interpolation} piece")),
         ("duration", f"{report.trajectory.duration:g} s"),
     ]
     return rows
@@ -136,6 +142,7 @@ def report_figures(report: TrajectoryReport) -> dict[str, Any]:
         "verdict": report.verdict(),
         "proven_clearance": report.proven_clearance,
         "contact": met,
+        "proven_until": report.proven_until,
         "unproven_time": report.unproven_time,
         "base_turn": report.turn,
         "largest_base_turn": report.largest_turn,

@@ -1,7 +1,8 @@
 """The first contact on an edge of a motion, by interval halving from its begin on.
 
-Whatever lies before the contact is proven free, but where distances are below the tolerance, as
-they are just before it. So no earlier contact deeper than that can hide between samples.
+Just before a contact distances are below the tolerance, and nothing is proven there. So the answer
+has two times: until the first all is proven free, at the second something touches. Between them
+nothing was found to touch, and an earlier contact is not ruled out.
 """
 
 from __future__ import annotations
@@ -10,15 +11,17 @@ from typing import NamedTuple
 
 from ffsr_plan.proof.interval_halving import Edge
 
+_FINEST = 2.0**-50  # intervals of [0, 1] that can still be halved
+
 
 class Search(NamedTuple):
     """What was found on an edge.
 
     Attributes:
-        contact: time in [0, 1] at which something touches; until the resolution before it nothing
-            does. None without a contact.
-        near: first time at which the clearance is so small that it could not be proven positive;
-            None without one before the contact.
+        contact: time in [0, 1] at which something touches, and did not at some time less than the
+            resolution before it. None without a contact.
+        near: time until which all is proven free: there the contact begins, or the clearance is so
+            small that it could not be proven positive. None if the whole edge is proven free.
     """
 
     contact: float | None
@@ -36,7 +39,8 @@ def first_contact(edge: Edge, tolerance: float, resolution: float, until: float 
     """
     near, first, last = None, edge.clearance(0.0), edge.clearance(1.0)
     if first <= 0.0:
-        return Search(0.0, None)
+        return Search(0.0, 0.0)
+    resolution = max(resolution, _FINEST)
     stack = [(0.0, 1.0, first, last)]
     while stack:
         begin, end, first, last = stack.pop()
@@ -46,7 +50,7 @@ def first_contact(edge: Edge, tolerance: float, resolution: float, until: float 
             continue
         small = _travel(edge, begin, end) <= 2.0 * max(tolerance, edge.rounding)
         if last <= 0.0 and end - begin <= resolution:
-            return Search(end, near)
+            return Search(end, begin if near is None else near)
         if last > 0.0 and small:
             near = begin if near is None else near
             continue

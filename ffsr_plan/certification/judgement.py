@@ -40,7 +40,10 @@ Given = Trajectory | PlanData | SmoothPlanData | Flight | str | Path
 
 
 class _Found(NamedTuple):
-    """What was found on a span: least proven clearance [m], or times [s] and the nearest pair."""
+    """What was found on a span: least proven clearance [m], or times [s] and the nearest pair.
+
+    `near` is the time until which all is proven free, None where the whole span is.
+    """
 
     queries: int
     clearance: float
@@ -118,7 +121,7 @@ def _judged(run: RobotTrajectory, scene: Scene, frame: str, tolerance: float) ->
     return TrajectoryReport(
         robot, scene, run.trajectory, run.mode, free,
         min(each.clearance for each in found) if free else 0.0, contact,
-        times[0] if times and contact is None else None, frame,
+        times[0] if times else float(run.trajectory.times[-1]), frame,
         samples_of(robot, spans, frame), sum(each.queries for each in found), spans,
     )  # fmt: skip
 
@@ -157,6 +160,8 @@ def _proven(span: Span, scene: Scene, tolerance: float) -> _Found:
                 close = found.near if close is None else min(close, found.near)
         if until <= 1.0:
             pair = _pair(prover, edge, until)
+            if near is None and close is not None:
+                near = begin + close * length
             return _Found(prover.queries, 0.0, near, begin + until * length, pair)
         if close is not None and near is None:
             near = begin + close * length

@@ -88,7 +88,8 @@ def _charts(shown: ShownTrajectory, frames: MotionFrames, times: Array) -> list[
     charts = []
     if len(shown.scene):
         curve = Curve("clearance", "clearance", clearances(frames, shown.scene, times))
-        charts.append(Quantity("clearance", "clearance", "m", [curve], [shown.proven_clearance]))
+        bounds = [shown.proven_clearance] if shown.proven_clearance > 0.0 else []
+        charts.append(Quantity("clearance", "clearance", "m", [curve], bounds))
     samples = shown.samples
     for name, text, unit, values in (
         ("attitude", "rotation of the base", "°", np.degrees(samples.turns)),

@@ -28,12 +28,15 @@ from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.scene.scene import Scene
 from ffsr_plan.trajectory.trajectory import Trajectory
 
+_SHOWN = 1e6  # times are shown in units of 1 / _SHOWN s
+
 
 class TrajectoryContact(NamedTuple):
-    """The first contact of a trajectory: earlier all is proven free, but below the tolerance.
+    """The first contact that was found on a trajectory; see `TrajectoryReport.proven_until`.
 
     Attributes:
-        time: at which something touches, at most 1e-6 s after it began to [s].
+        time: at which something touches, and did not 1e-6 s before, unless it is the first time or
+            a piece lasts longer than 1e9 s [s].
         link: name of the link.
         obstacle: number of the obstacle in the scene, or name of the other link.
         name: of the obstacle, as messages have it.
@@ -64,8 +67,9 @@ class TrajectoryReport:
         proven_clearance: lower bound on the distance to any obstacle all along it [m]; 0 where it
             is not free, infinite without obstacles.
         contact: the first contact; None without one.
-        unproven_time: first time at which a distance is too small to be proven positive, although
-            nothing touches there [s]; None without one.
+        proven_until: time before which all is proven free [s]: the last time where all of it is.
+            From there to the contact, or to the end without one, nothing was found to touch, and
+            distances below the tolerance are neither proven nor refuted.
         frame: the end effector.
         samples: the trajectory at its own times and between them.
         queries: number of configurations at which Coal measured distances.
@@ -78,11 +82,16 @@ class TrajectoryReport:
     free: bool
     proven_clearance: float
     contact: TrajectoryContact | None
-    unproven_time: float | None
+    proven_until: float
     frame: str
     samples: Samples = field(repr=False)
     queries: int
     _spans: Sequence[Span] = field(repr=False)
+
+    @property
+    def unproven_time(self) -> float | None:
+        """`proven_until` of a trajectory that is neither proven nor refuted, else None [s]."""
+        return self.proven_until if not self.free and self.contact is None else None
 
     @property
     def turn(self) -> float:
@@ -119,11 +128,22 @@ class TrajectoryReport:
             if depth > TOUCHING:
                 met = encounter(-depth, obstacle, source)
                 text += f"; deepest at {c.deepest_time:.4g} s, where link '{link}' {met}"
-            return text
+            return text + self._before()
         return (
-            f"not proven: near {self.unproven_time:.6f} s the distance is below the tolerance, "
+            f"not proven: near {self.proven_until:.6f} s the distance is below the tolerance, "
             "although nothing was found to touch"
         )
+
+    def _before(self) -> str:
+        """What is proven of the time before the contact, as the end of a sentence."""
+        first, until = float(self.trajectory.times[0]), self.proven_until
+        found = first if self.contact is None else self.contact.time
+        if found <= first:
+            return ""
+        text = f"; proven free before {np.floor(until * _SHOWN) / _SHOWN:.6f} s"
+        if found - until > 2.0 / _SHOWN:
+            text += " and undecided from there to the contact, with distances below the tolerance"
+        return text
 
     def at(self, times: ArrayLike) -> Array:
         """Configurations at times, base reaction included.

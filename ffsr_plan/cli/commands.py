@@ -312,6 +312,7 @@ def certify(
     visual: Annotated[bool, typer.Option(help="Take visual shapes where others lack.")] = False,
     balance: Annotated[bool, typer.Option(help="Mend inertias that no body has.")] = False,
     interpolation: Annotated[str | None, typer.Option(help="linear or cubic.")] = None,
+    topic: Annotated[str | None, typer.Option(help="Of a bag, the only one read.")] = None,
     frame: Annotated[str | None, typer.Option(help="The end effector.")] = None,
     tolerance: Annotated[float, typer.Option(help="Clearance in m that is not proven.")] = 1e-4,
     page: PageFile = None,
@@ -321,7 +322,7 @@ def certify(
 ) -> None:
     """Judge any trajectory: proven free when the base reacts, or the first contact."""
     with errors_on_stderr():
-        from ffsr_plan.certification import certified_files
+        from ffsr_plan.certification import certified_files as files
         from ffsr_plan.cli.console.output import Output
         from ffsr_plan.cli.console.result_files import check_replacement
         from ffsr_plan.cli.printed_tables import side_by_side
@@ -329,18 +330,17 @@ def certify(
         output = Output(quiet, as_json)
         if page is not None:
             check_replacement("--page", page, force)
-        dirs, locked = package_dir or (), lock or ()
-        robot = certified_files.RobotFile(
-            urdf, srdf, dirs, locked, base_mass, base_inertia, visual, balance
+        robot = files.RobotFile(
+            urdf, srdf, package_dir or (), lock or (), base_mass, base_inertia, visual, balance
         )
-        options = {"interpolation": interpolation, "frame": frame, "tolerance": tolerance}
+        options = {"interpolation": interpolation, "topic": topic, "frame": frame}
         modes = mode or ["free-floating"]
-        reports = certified_files.certify_files(trajectory, robot, scene, modes, **options)  # type: ignore[arg-type]
+        reports = files.certify_files(trajectory, robot, scene, modes, tolerance, **options)
         if page is not None:
             reports[0].write_html(page)
         output.show(
-            lambda: [side_by_side(modes, [certified_files.report_rows(r) for r in reports])],
-            lambda: {"reports": [certified_files.report_figures(r) for r in reports]},
+            lambda: [side_by_side(modes, [files.report_rows(r) for r in reports])],
+            lambda: {"reports": [files.report_figures(r) for r in reports]},
         )
         if not all(report.free for report in reports):
             raise typer.Exit(1)

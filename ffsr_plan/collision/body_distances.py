@@ -8,9 +8,11 @@ from ffsr_plan.bodies.body_motion import Poses
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.robots.robot import SpaceRobot
 from ffsr_plan.robots.shape_arrays import BOX
+
+_ASIDE = 1e5  # [m]
 
 
 def in_axes(placed: Placements, poses: Poses, shifts: Array) -> Placements:
@@ -27,6 +29,19 @@ def in_axes(placed: Placements, poses: Poses, shifts: Array) -> Placements:
     frames[..., 9:12] = moved @ turns
     seen = np.swapaxes(turns, 1, 2)[:, None] @ placed.rotations
     frames[..., :9] = seen.reshape(-1, count, 9)
+    return Placements(frames)
+
+
+def moved_aside(placed: Placements, rows: Flags, shapes: Flags) -> Placements:
+    """Placements with some shapes so far away that they are never the nearest.
+
+    Args:
+        placed: K placements.
+        rows: (K,) the placements concerned.
+        shapes: (g,) the shapes moved.
+    """
+    frames = placed.frames.copy()
+    frames[np.flatnonzero(rows)[:, None], np.flatnonzero(shapes), 9] += _ASIDE
     return Placements(frames)
 
 

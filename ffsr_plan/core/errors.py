@@ -171,13 +171,11 @@ class NoPath(PlanningError):
         """The layer, what closes it, and what may help."""
         spheres = [o for o in self.obstacles if isinstance(o, int)]
         links = ", ".join(f"'{o}'" for o in self.obstacles if isinstance(o, str))
-        causes = [
-            closing_obstacles(self.contacts, spheres),
-            f"self-collision of {links}" if links else "",
-        ]
+        touching = f"self-collision of {links}" if links else ""
+        causes = filter(None, (closing_obstacles(self.contacts, spheres), touching))
         return (
             f"no path on this lattice: layer {self.layer} of {self.divisions} cannot be passed "
-            f"(closed by {' and '.join(filter(None, causes)) or 'the limits of the lattice'})"
+            f"(closed by {' and '.join(causes) or 'the limits of the lattice'})"
             + helping(self.advice or ("wider or additional lattice axes",))
         )
 
@@ -274,19 +272,22 @@ class UnprovenCurve(PlanningError):
         edge: the first edge of the path that was refused, from 1 on.
         edges: their number.
         contact: the nearest pair in its middle; its depth is negative apart.
+        time: when the path is there [s]; None without bodies that move.
     """
 
     edge: int
     edges: int
     contact: Contact
+    time: float | None = None
 
     def message(self) -> str:
         """Where the proof fails, and what may help."""
         link, obstacle, depth, source = self.contact
+        when = "" if self.time is None else f" at {self.time:.4g} s"
         return (
             f"no smooth curve could be proven free: on edge {self.edge} of {self.edges}, link "
-            f"'{link}' {encounter(-depth, obstacle, source)}; what may help: a plan "
-            "with more clearance, by min_clearance or a larger delta"
+            f"'{link}' {encounter(-depth, obstacle, source)}{when}; what may help: a plan with "
+            "more clearance, by min_clearance or a larger delta"
         )
 
 

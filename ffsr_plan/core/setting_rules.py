@@ -198,7 +198,7 @@ class Numbers(Rule):
     """An array of finite numbers of one length, kept read-only.
 
     Attributes:
-        length: how many numbers.
+        length: how many numbers; -1 for any number of them.
         at_most: greatest absolute value.
     """
 
@@ -212,12 +212,8 @@ class Numbers(Rule):
     def json_schema(self) -> dict[str, Any]:
         """See `Rule.json_schema`."""
         items = {"type": "number", "minimum": -self.at_most, "maximum": self.at_most}
-        return {
-            "type": "array",
-            "items": items,
-            "minItems": self.length,
-            "maxItems": self.length,
-        }
+        sizes = {"minItems": self.length, "maxItems": self.length} if self.length >= 0 else {}
+        return {"type": "array", "items": items, **sizes}
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,12 @@ class CurvedMotion:
     """
 
     def __init__(
-        self, motion: Motion, control: ControlPoints, *, joints_bend: bool = False
+        self,
+        motion: Motion,
+        control: ControlPoints,
+        *,
+        joints_bend: bool = False,
+        start: Array | None = None,
     ) -> None:
         """The curve with given control points.
 
@@ -44,12 +49,13 @@ class CurvedMotion:
                 hold the attitude, or the joints follow a straight line, with the same rotation.
             control: the control points.
             joints_bend: whether the joints leave the straight line that those of the motion follow.
+            start: (4,) attitude at the begin (xyzw), by default that of the motion.
 
         Raises:
             IntegrationError: the reaction along a piece cannot be integrated.
         """
         self.robot, self.mode, self.control = motion.robot, motion.mode, control
-        self._start = motion.attitudes[0]
+        self._start = motion.attitudes[0] if start is None else start
         turn = motion.turns.sum(axis=0) if self.mode.has_wheels else np.zeros(3)
         self.pieces = pieces_with(control.table, turn)
         values = self.pieces.values

@@ -1,8 +1,8 @@
 """Trajectories as comma-separated tables: a column of times, one of each joint, and the base's.
 
 The header names the columns, each with its unit unless it is the second, the radian or the metre:
-`t [s]`, `elbow [deg]`, `elbow velocity [rad/s]`, `base_x [m]`, `base_qx`. The tables that plans and
-flights write are read as well: what is no time, joint or base pose there is skipped.
+`t [s]`, `elbow [deg]`, `wrist (deg)`, `elbow velocity [rad/s]`, `base_x [m]`, `base_qx`. The tables
+that plans and flights write are read as well: what is no time, joint or base pose there is skipped.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _UNITS = {
 _SKIPPED = re.compile(r"base_(a|w|dw)[xyz]|alpha|beta|gamma|(thrust|wheel_\w+)_[xyz]")
 _HEADER = re.compile(
     r"\s*([^\[\]()]*?)\s*(position|velocity|acceleration|torque|force|effort)?\s*"
-    r"(?:\([^)]*\))?\s*(?:\[\s*([^\]\s][^\]]*?)\s*\])?\s*"
+    r"(?:\(([^)]*)\))?\s*(?:\[\s*([^\]\s][^\]]*?)\s*\])?\s*"
 )
 _COMMENT = re.compile(r"#\s*interpolation\s*[:=]\s*(\w+)\s*")
 _LONGEST_CLOCK = (
@@ -129,10 +129,12 @@ def _header(what: str, cells: list[str]) -> _Columns:
     found: _Columns = {}
     for place, cell in enumerate(cells):
         match = _HEADER.fullmatch(cell)
-        name, quantity, unit = match.groups() if match else (cell, None, None)
+        name, quantity, note, unit = match.groups() if match else (cell, None, None, None)
         kind = _kind(str(name), quantity)
         if kind is None:
             continue
+        if unit is None and note is not None:  # where both are given, the first is a remark
+            unit = note.strip()
         if not name:
             raise InvalidInput(f"{what}, header", cell, "a name in each column")
         units = _UNITS[kind]
@@ -144,7 +146,8 @@ def _header(what: str, cells: list[str]) -> _Columns:
         found[key] = place, units[unit] if unit else 1.0
     if not any(kind == "time" for kind, _ in found):
         shown = ", ".join(cell.strip() for cell in cells)
-        raise InvalidInput(f"{what}, header", shown, "a column t [s] of times")
+        allowed = "columns parted by commas" if len(cells) == 1 else "a column t [s] of times"
+        raise InvalidInput(f"{what}, header", shown, allowed)
     return found
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.checks import text, whole_number
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.text_files import reason, write_files
 from ffsr_plan.formats.ros_messages import BASE_JOINT, messages_of, trajectory_from
@@ -47,24 +48,32 @@ _DEFINITIONS = {
 
 
 def read_mcap(
-    path: str | Path, interpolation: str | None = None, *, topic: str | None = None
+    path: str | Path,
+    interpolation: str | None = None,
+    *,
+    topic: str | None = None,
+    number: int | None = None,
 ) -> Trajectory:
-    """Read the first trajectory of a bag, or the states of the joints that it recorded.
+    """Read the trajectory of a bag, or the states of the joints that it recorded.
 
     Read are JointTrajectory with, if there is one, the MultiDOFJointTrajectory of the base;
     otherwise RobotTrajectory or DisplayTrajectory; otherwise all JointState messages of one topic,
-    each of which is a row.
+    each of which is a row. Of several trajectories one has to be chosen.
 
     Args:
         path: the file; it ends in `.mcap`.
         interpolation: `linear` or `cubic`; by default cubic where velocities are given, but linear
             between recorded states.
         topic: the only one that is read; by default all.
+        number: which trajectory of the bag, from 0 in the order of their times; None if there is
+            one only.
 
     Raises:
         InvalidInput: names the file, the field, its value and what is allowed.
     """
     target, what = checked_path("trajectory", path, ".mcap"), f"bag '{path}'"
+    if topic is not None:
+        text("topic", topic)
     factory = extra("mcap_ros2.decoder").DecoderFactory
     make_reader, topics = extra("mcap.reader").make_reader, None if topic is None else [topic]
     found: dict[str, list[Any]] = {}
@@ -79,11 +88,15 @@ def read_mcap(
     except Exception as error:  # of the package: damaged files raise many kinds
         allowed = f"an MCAP file of ROS 2 messages ({reason(error)})"
         raise InvalidInput("trajectory", str(path), allowed) from None
+    if topic is not None and not found:
+        raise InvalidInput(f"{what}, topic", topic, "a topic of joints over time in this bag")
+    if number is not None:
+        whole_number("number", number, at_least=0)
     for kind in (_JOINTS, _BASE, _ROBOT, _DISPLAY):
         if kind in found:
-            message = _plain(found[kind][0][1])
+            message = _chosen(f"{what}, {kind}", found[kind], number)
             if kind == _JOINTS and _BASE in found:
-                base = _plain(found[_BASE][0][1])
+                base = _chosen(f"{what}, {_BASE}", found[_BASE], number)
                 message = {"joint_trajectory": message, "multi_dof_joint_trajectory": base}
             return trajectory_from(what, message, interpolation)
     if _STATES in found:
@@ -123,6 +136,17 @@ def write_mcap(
     write_files("path", {target: content.getvalue()})
 
 
+def _chosen(what: str, messages: list[tuple[str, Any]], number: int | None) -> Any:  # noqa: ANN401
+    """The message that is meant, as plain values."""
+    count = len(messages)
+    if (number is None and count > 1) or (number is not None and number >= count):
+        topics = ", ".join(dict.fromkeys(topic for topic, _ in messages))
+        allowed = f"one; of several, choose by `topic` or `number` (0 to {count - 1}) of read_mcap"
+        asked = f"{count} on {topics}" + ("" if number is None else f", number {number} asked for")
+        raise InvalidInput(what, asked, allowed)
+    return _plain(messages[number or 0][1])
+
+
 def _plain(message: object) -> Any:  # noqa: ANN401 - what a message holds
     """A message as mappings, lists and numbers."""
     if message is None or isinstance(message, (bool, int, float, str, bytes)):
@@ -136,9 +160,11 @@ def _plain(message: object) -> Any:  # noqa: ANN401 - what a message holds
 
 
 def _from_states(what: str, states: list[tuple[str, Any]], interpolation: str) -> Trajectory:
-    """The trajectory of recorded states of the topic that comes first."""
-    topic = states[0][0]
-    rows = [_plain(message) for name, message in states if name == topic]
+    """The trajectory of the recorded states of one topic."""
+    topics = list(dict.fromkeys(name for name, _ in states))
+    if len(topics) > 1:
+        raise InvalidInput(f"{what}, topics of {_STATES}", ", ".join(topics), "one: `topic` of it")
+    topic, rows = topics[0], [_plain(message) for _, message in states]
     names = rows[0]["name"]
     times, positions, velocities = [], list[list[float]](), list[list[float]]()
     for k, row in enumerate(rows):

@@ -29,7 +29,9 @@ from ffsr_plan.scene.shapes.obstacle_shapes import (
 from ffsr_plan.trajectory.trajectory import Trajectory
 
 _OBSTACLE, _LINK = "0.93 0.35 0.28 1", "0.8 0.8 0.84 1"
-_STIFFNESS = "200"  # [N m/rad] of the servos, which the viewer shows at work
+_SERVO_RATE = 50.0  # [1/s] of the critically damped servos, far below 1 / _TIME_STEP
+_TIME_STEP = 0.002  # [s]
+_ROOM = 2.0  # [m] around the way of the base that the viewer shows
 _PREFIX = "obstacle_"
 
 
@@ -59,20 +61,23 @@ def write_mjcf(
     root = ElementTree.Element("mujoco", model=robot.name)
     settings = {"angle": "radian", "autolimits": "false", "balanceinertia": "false"}
     ElementTree.SubElement(root, "compiler", settings)
-    ElementTree.SubElement(root, "option", gravity="0 0 0", integrator="RK4", timestep="0.005")
+    options = {"gravity": "0 0 0", "integrator": "implicitfast", "timestep": repr(_TIME_STEP)}
+    ElementTree.SubElement(root, "option", options)
     visual = ElementTree.SubElement(root, "visual")
     ElementTree.SubElement(visual, "headlight", ambient="0.4 0.4 0.4")
+    view = ElementTree.SubElement(root, "statistic")
     assets = ElementTree.SubElement(root, "asset")
     world = ElementTree.SubElement(root, "worldbody")
     for k, shape in enumerate(obstacles_of(scene)):
         _obstacle(world, assets, shape, f"{_PREFIX}{k}")
-    _bodies(world, assets, robot)
+    base = _bodies(world, assets, robot)
     servos = ElementTree.SubElement(root, "actuator")
-    for name in robot.joint_names:
-        servo = {"name": name, "joint": name, "kp": _STIFFNESS, "dampratio": "1"}
-        ElementTree.SubElement(servos, "position", servo)
+    for name, inertia in zip(robot.joint_names, _felt_inertias(robot).tolist(), strict=True):
+        gains = {"kp": repr(_SERVO_RATE**2 * inertia), "kv": repr(2.0 * _SERVO_RATE * inertia)}
+        ElementTree.SubElement(servos, "position", {"name": name, "joint": name, **gains})
     if trajectory is not None:
         _keyframes(root, robot, trajectory)
+        _show_start(base, view, trajectory)
     ElementTree.indent(root)
     write_text("path", target, ElementTree.tostring(root, encoding="unicode") + "\n")
 
@@ -204,8 +209,14 @@ def _kind(shape: ObstacleShape) -> tuple[str, Array]:
     return "mesh", np.zeros(0)
 
 
-def _bodies(world: ElementTree.Element, assets: ElementTree.Element, robot: SpaceRobot) -> None:
-    """Add the tree of the robot's bodies, one for each joint, the base on a free joint."""
+def _bodies(
+    world: ElementTree.Element, assets: ElementTree.Element, robot: SpaceRobot
+) -> ElementTree.Element:
+    """Add the tree of the robot's bodies, one for each joint, the base on a free joint.
+
+    Returns:
+        The base.
+    """
     model = robot.model
     elements: dict[int, ElementTree.Element] = {0: world}
     for j in range(1, model.njoints):
@@ -226,6 +237,13 @@ def _bodies(world: ElementTree.Element, assets: ElementTree.Element, robot: Spac
         _inertial(body, model.inertias[j])
     for number, shape in enumerate(robot.collision_model.geometryObjects):
         _link_shape(elements[shape.parentJoint], assets, shape, f"shape_{number}")
+    return elements[1]
+
+
+def _felt_inertias(robot: SpaceRobot) -> Array:
+    """(nd,) inertias that the joints' motors feel while all else is free to move [kg m^2 or kg]."""
+    inverse = pin.computeMinverse(robot.model, robot.model.createData(), robot.neutral())
+    return np.asarray(1.0 / np.diag(inverse)[6:])
 
 
 def _axis(robot: SpaceRobot, joint: int) -> Array:
@@ -301,6 +319,19 @@ def _keyframes(root: ElementTree.Element, robot: SpaceRobot, trajectory: Traject
         if np.any(qvel):
             key["qvel"] = _row(qvel[k])
         ElementTree.SubElement(frames, "key", key)
+
+
+def _show_start(
+    base: ElementTree.Element, view: ElementTree.Element, trajectory: Trajectory
+) -> None:
+    """Let a model be reset to where the base starts, and be seen with all of the base's way."""
+    places, turns = trajectory.base_positions, trajectory.base_attitudes
+    if places is not None and turns is not None:
+        base.set("pos", _row(places[0]))
+        base.set("quat", _row(turns[0, [3, 0, 1, 2]]))
+        low, high = places.min(axis=0), places.max(axis=0)
+        view.set("center", _row(0.5 * (low + high)))
+        view.set("extent", repr(float(np.linalg.norm(high - low)) + _ROOM))
 
 
 def _pose(shape: ObstacleShape) -> dict[str, str]:

@@ -145,6 +145,8 @@ def trajectory_from(what: str, message: object, interpolation: str | None) -> Tr
     parts = {"joint_trajectory": message, "multi_dof_joint_trajectory": None}
     for _ in range(4):  # messages within messages
         if isinstance(message, list) and message:
+            if len(message) > 1:
+                raise InvalidInput(what, f"{len(message)} messages in a list", "one trajectory")
             message = message[0]
         if not isinstance(message, dict) or "points" in message or "joint_trajectory" in message:
             break

@@ -46,15 +46,19 @@ _WRITERS: dict[str, Callable[[str | Path, Trajectory], None]] = {
 }
 
 
-def read_trajectory(path: str | Path, interpolation: str | None = None) -> Trajectory:
+def read_trajectory(
+    path: str | Path, interpolation: str | None = None, topic: str | None = None
+) -> Trajectory:
     """Read a trajectory; the end of the file's name tells the format.
 
     Args:
         path: a file.
         interpolation: `linear` or `cubic`, in place of what the file says.
+        topic: of a bag `*.mcap`, the only one that is read; `read_mcap` also takes a number.
 
     Raises:
-        InvalidInput: another end, a file that cannot be read, or what is wrong in it.
+        InvalidInput: another end, a topic of what is no bag, a file that cannot be read, or what is
+            wrong in it.
     """
     target = checked_path("trajectory", path)
     if interpolation is not None:
@@ -64,7 +68,11 @@ def read_trajectory(path: str | Path, interpolation: str | None = None) -> Traje
         raise unknown_name("trajectory", str(path), [f"a file *{end}" for end in _READERS])
     if not target.is_file():
         raise InvalidInput("trajectory", str(path), "a file that exists")
-    return reader(target, interpolation)
+    if topic is None:
+        return reader(target, interpolation)
+    if target.suffix.casefold() != ".mcap":
+        raise InvalidInput("topic", topic, f"None for '{target.name}', which is no bag")
+    return read_mcap(target, interpolation, topic=topic)
 
 
 def write_trajectory(path: str | Path, trajectory: Trajectory) -> None:

@@ -58,11 +58,7 @@ class Approach(NamedTuple):
 
     def parameters(self) -> Array:
         """(n + 1,) of the control points on the motion; the last two are its end."""
-        time = np.minimum(np.arange(self.pieces + 1.0) / (self.pieces - 1), 1.0)
-        late = np.maximum(time - (1.0 - self.window), 0.0)
-        passed = (time - 0.5 * late**2 / self.window) / (1.0 - 0.5 * self.window)
-        passed[-2:] = 1.0
-        return np.asarray(passed * self.arrival.motion.edges)
+        return braking(self.pieces, self.window) * self.arrival.motion.edges
 
     def found(self) -> Found | None:
         """The curve whose end is nearest to that of the motion; None without convergence."""
@@ -124,22 +120,49 @@ class Approach(NamedTuple):
         positions = control.positions
         if not self.arrival.motion.mode.floats:
             origin, rate = end.configuration[:3], end.base_velocity / speed
-            positions = self._ending(positions, origin, rate)
+            positions = with_end(positions, self.window, origin, rate)
         rates = end.joint_rates / speed
-        joint_values = self._ending(control.joint_values, joints, rates)
+        joint_values = with_end(control.joint_values, self.window, joints, rates)
         return ControlPoints(positions, joint_values, control.shares)
 
-    def _ending(self, points: Array, end: Array, rate: Array) -> Array:
-        """Points (n + 1, k) displaced in the window, so that their curve has an end and a rate."""
-        u = np.maximum(np.arange(-self.pieces, 1.0) / (self.window * self.pieces) + 1.0, 0.0)[
-            :, None
-        ]
-        whole, bow = u**2 * (3.0 - 2.0 * u), u**2 * (u - 1.0)
-        points = points + whole * (end - points[-1])
-        bows = (rate - (points[-1] - points[-2])) / (bow[-1] - bow[-2])
-        moved: Array = points + bow * bows
-        moved[-1] = end
-        return moved
+
+def braking(pieces: int, window: float) -> Array:
+    """Shares of a way in equal steps and, in a window at its end, in ever smaller ones.
+
+    Args:
+        pieces: n, number of steps.
+        window: share of the steps that become smaller.
+
+    Returns:
+        (n + 1,) from 0 to 1; the last two are 1.
+    """
+    time = np.minimum(np.arange(pieces + 1.0) / (pieces - 1), 1.0)
+    late = np.maximum(time - (1.0 - window), 0.0)
+    passed = (time - 0.5 * late**2 / window) / (1.0 - 0.5 * window)
+    passed[-2:] = 1.0
+    return np.asarray(passed)
+
+
+def with_end(points: Array, window: float, end: Array, rate: Array) -> Array:
+    """Control points displaced in a window, so that their curve has a given end and a rate there.
+
+    Args:
+        points: (n + 1, k).
+        window: share of them that is displaced.
+        end: (k,) of the curve.
+        rate: (k,) its derivative there by the curve's parameter.
+
+    Returns:
+        (n + 1, k).
+    """
+    pieces = len(points) - 1
+    u = np.maximum(np.arange(-pieces, 1.0) / (window * pieces) + 1.0, 0.0)[:, None]
+    whole, bow = u**2 * (3.0 - 2.0 * u), u**2 * (u - 1.0)
+    points = points + whole * (end - points[-1])
+    bows = (rate - (points[-1] - points[-2])) / (bow[-1] - bow[-2])
+    moved: Array = points + bow * bows
+    moved[-1] = end
+    return moved
 
 
 def _turn(begin: Array, end: Array) -> Array:

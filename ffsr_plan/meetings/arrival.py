@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 import pinocchio as pin
 
+from ffsr_plan.bodies.body_twist import body_state
 from ffsr_plan.core import rotations
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.errors import InvalidInput
@@ -28,7 +29,9 @@ from ffsr_plan.dynamics.dynamic_singularity import warn_if_near
 from ffsr_plan.dynamics.momentum import connection, generalized_jacobian
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.meetings.meeting import Meeting
+from ffsr_plan.meetings.met_body import met_body
 from ffsr_plan.robots.kinematics import frame_index
+from ffsr_plan.scene.scene import Scene
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 
 _SINGULAR = 1e-6  # relative: directions in which the joints move the frame by less count as none
@@ -56,26 +59,37 @@ class Arrival:
 
     Attributes:
         motion: the motion, of a plan.
-        meeting: frame, pose and twist.
+        meeting: frame and time; pose and twist in the world or along the target's axes.
         pose: of the frame on arrival, world.
+        twist: (6,) of the frame on arrival, world axes [m/s, rad/s].
     """
 
-    def __init__(self, motion: Motion, meeting: Meeting) -> None:
+    def __init__(self, motion: Motion, meeting: Meeting, scene: Scene) -> None:
         """The pose of the meeting, or where it leaves it open that at the end of the motion.
 
         Raises:
-            InvalidInput: an unknown frame, or a robot without joints.
+            InvalidInput: an unknown frame or target, one whose velocity is not known, or a robot
+                without joints.
         """
         self.motion, self.meeting = motion, meeting
         if motion.robot.nd == 0:
             raise InvalidInput("robot", motion.robot.name, "a robot with joints")
         self._frame = frame_index(motion.robot.model, meeting.frame)
         arrival = self._frame_pose(motion.configurations()[-1])
-        position, angles = meeting.position, meeting.attitude
-        self.pose = pin.SE3(
-            arrival.rotation if angles is None else rotations.matrix(rotations.from_angles(angles)),
-            arrival.translation if position is None else position,
-        )
+        number = met_body(meeting, scene)
+        target = None if number is None else body_state(scene.bodies[number], meeting.at)
+        axes = np.eye(3) if target is None else rotations.matrix(target.attitude)
+        place, turn = arrival.translation, arrival.rotation
+        if meeting.position is not None:
+            place = axes @ meeting.position + (0.0 if target is None else target.position)
+        if meeting.attitude is not None:
+            turn = axes @ rotations.matrix(rotations.from_angles(meeting.attitude))
+        self.pose = pin.SE3(turn, place)
+        velocity, angular = axes @ meeting.velocity, axes @ meeting.angular_velocity
+        if target is not None:
+            velocity = velocity + target.velocity_at(place)
+            angular = angular + target.angular_velocity
+        self.twist: Array = np.concatenate([velocity, angular])
 
     def state(self, joints: Array) -> EndState:
         """The state with given joint values (nd,) [rad or m]."""
@@ -84,7 +98,7 @@ class Arrival:
         base = self.pose * self._frame_pose(alone).inverse()
         quat = pin.Quaternion(base.rotation).coeffs()
         q = robot.assemble(base.translation, quat / np.linalg.norm(quat), joints)
-        twist = np.concatenate([self.meeting.velocity, self.meeting.angular_velocity])
+        twist = self.twist
         if mode.floats:
             jacobian = generalized_jacobian(robot, q, self.meeting.frame)
             rates = np.linalg.pinv(jacobian, _SINGULAR) @ twist
@@ -100,8 +114,7 @@ class Arrival:
         Warns:
             NearDynamicSingularity: the base floats, and the frame can hardly move in a direction.
         """
-        robot, meeting = self.motion.robot, self.meeting
-        twist = np.concatenate([meeting.velocity, meeting.angular_velocity])
+        robot, twist = self.motion.robot, self.twist
         floats = self.motion.mode.floats
         what = "meeting.velocity, meeting.angular_velocity" if floats else _TURN
         value = (twist if floats else twist[3:]).tolist()
@@ -114,7 +127,7 @@ class Arrival:
             )
             raise InvalidInput(what, value, allowed)
         if floats:
-            warn_if_near(robot, state.configuration, meeting.frame, attitude=True)
+            warn_if_near(robot, state.configuration, self.meeting.frame, attitude=True)
         for name, rate, most in zip(
             robot.joint_names, state.joint_rates, limits.velocity[2:], strict=True
         ):
@@ -130,7 +143,7 @@ class Arrival:
                 f"one for which the base moves at {limits.velocity[0]:.4g} m/s at most, not at "
                 f"{speed:.4g} m/s"
             )
-            raise InvalidInput("meeting.velocity", meeting.velocity.tolist(), allowed)
+            raise InvalidInput("meeting.velocity", twist[:3].tolist(), allowed)
 
     def _reacting(self, q: Array) -> Array:
         """(6, nd) Jacobian of the frame with its base origin held; J of the module's docstring."""

@@ -19,14 +19,17 @@ from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.meetings.approach import Approach
 from ffsr_plan.meetings.arrival import Arrival
 from ffsr_plan.meetings.meeting import Meeting
+from ffsr_plan.meetings.met_body import touching_links
 from ffsr_plan.meetings.timed_approach import earliest, timed_approach
 from ffsr_plan.problem.problem import Problem
+from ffsr_plan.scene.scene import Scene
 from ffsr_plan.smooth_flight.curve_flight import CurveFlight
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.proven_curve import ProvenCurve
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 
-_WINDOWS = 0.25, 0.125, 0.5, 0.0625  # shares of the curve; of equals, the first is taken
+WINDOWS = 0.25, 0.125, 0.5, 0.0625
+"""Shares of a curve that leave the plan; of equals, the first is taken."""
 _FACTORS = 1, 2, 4  # of the number of control points
 
 
@@ -52,20 +55,25 @@ def meeting_flight(
         InvalidInput: a meeting that cannot be, naming what is allowed.
         UnprovenCurve: a curve that meets on time could not be proven free.
     """
-    _refuse_jerk(limits, motion)
-    arrival = Arrival(motion, meeting)
+    refuse_jerk(limits, motion, "a meeting")
+    arrival, scene = Arrival(motion, meeting, problem.scene), problem.scene
+    _check_known(meeting, scene)
     refused: list[CurveProof] = []
     for window in _by_delta_v(arrival, limits):
         for factor in _FACTORS:
             found, flight = timed_approach(arrival, limits, meeting.at, window, factor)
             if found is None or flight is None:
                 break
-            proof = prove_curve(problem, found.curve, problem.tolerance)
+            times = flight.timetable if scene.moves else None
+            touching = None
+            if times is not None:
+                touching = touching_links(meeting, scene, found.curve, times)
+            proof = prove_curve(problem, found.curve, problem.tolerance, times, touching)
             if not len(proof.refused):
                 nodes = _nodes(arrival, window, proof.curve.edges)
                 return MeetingFlight(flight, _proven(proof, nodes, refused))
             refused.append(proof)
-    raise _unproven(problem, motion, refused)
+    raise unproven(problem, motion, refused, meeting.word)
 
 
 def _by_delta_v(arrival: Arrival, limits: FlightLimits) -> list[float]:
@@ -75,7 +83,7 @@ def _by_delta_v(arrival: Arrival, limits: FlightLimits) -> list[float]:
         InvalidInput: none can.
     """
     at = arrival.meeting.at
-    tried = {window: timed_approach(arrival, limits, at, window) for window in _WINDOWS}
+    tried = {window: timed_approach(arrival, limits, at, window) for window in WINDOWS}
     on_time = {window: each.flight.delta_v for window, each in tried.items() if each.flight}
     if not on_time:
         pose_met = any(each.found is not None for each in tried.values())
@@ -97,12 +105,25 @@ def _proven(proof: CurveProof, nodes: Array, refused: list[CurveProof]) -> Prove
     return ProvenCurve("meeting", proof, nodes, before, queries)
 
 
-def _refuse_jerk(limits: FlightLimits, motion: Motion) -> None:
-    """Raise `InvalidInput` for a limit on jerk, of which no law with a speed at its end is made."""
+def refuse_jerk(limits: FlightLimits, motion: Motion, what: str) -> None:
+    """Raise `InvalidInput` for a limit on jerk, of which no law with a speed at its end is made.
+
+    Args:
+        limits: the limits.
+        motion: of the plan.
+        what: what has a speed there.
+    """
     names = "thruster_jerk", "", *(f"joint_jerk, joint {j}" for j in motion.robot.joint_names)
     for name, most in zip(names, limits.jerk, strict=True):
         if np.isfinite(most):
-            raise InvalidInput(name, float(most), "no limit on jerk with a meeting")
+            raise InvalidInput(name, float(most), f"no limit on jerk with {what}")
+
+
+def _check_known(meeting: Meeting, scene: Scene) -> None:
+    """Raise `InvalidInput` for a meeting when the motion of a body is not known any more."""
+    if meeting.at > (known := scene.known_until):
+        allowed = f"at most {known:.6g} s, up to which the motions of all bodies are known"
+        raise InvalidInput("meeting.at", meeting.at, allowed)
 
 
 def _pose_not_met(arrival: Arrival) -> InvalidInput:
@@ -120,7 +141,7 @@ def _too_early(arrival: Arrival, limits: FlightLimits) -> InvalidInput:
     at = arrival.meeting.at
     least = earliest(arrival, limits, at)
     if least is None:
-        twist = [*arrival.meeting.velocity.tolist(), *arrival.meeting.angular_velocity.tolist()]
+        twist = arrival.twist.tolist()
         allowed = "a twist that the limits on thrust, torques and accelerations allow at some time"
         return InvalidInput("meeting.velocity, meeting.angular_velocity", twist, allowed)
     allowed = f"at least {_rounded_up(least)} s, about the earliest within these limits"
@@ -133,8 +154,17 @@ def _rounded_up(time: float) -> str:
     return f"{np.ceil(time / unit) * unit:.4g}"
 
 
-def _unproven(problem: Problem, motion: Motion, refused: list[CurveProof]) -> Exception:
-    """Why the last curve was refused: a joint beyond its limits, or something too close."""
+def unproven(
+    problem: Problem, motion: Motion, refused: list[CurveProof], what: str
+) -> InvalidInput | UnprovenCurve:
+    """Why the last curve was refused: a joint beyond its limits, or something too close.
+
+    Args:
+        problem: what was planned.
+        motion: of the plan.
+        refused: proofs of the curves, at least one.
+        what: `meeting` or `departure`.
+    """
     proof = refused[-1]
     robot, values = motion.robot, proof.curve.pieces.values[:, :, 3:-1]
     low, high = values.min(axis=(0, 1)), values.max(axis=(0, 1))
@@ -142,8 +172,8 @@ def _unproven(problem: Problem, motion: Motion, refused: list[CurveProof]) -> Ex
     if len(proof.outside) and np.max(beyond) > 0.0:
         k = int(np.argmax(beyond))
         value = float(low[k] if robot.lower[k] - low[k] > 0.0 else high[k])
-        allowed = f"from {robot.lower[k]:.6g} to {robot.upper[k]:.6g} all along the approach"
-        return InvalidInput(f"meeting, joint {robot.joint_names[k]} on the way", value, allowed)
+        allowed = f"from {robot.lower[k]:.6g} to {robot.upper[k]:.6g} all along the curve"
+        return InvalidInput(f"{what}, joint {robot.joint_names[k]} on the way", value, allowed)
     piece, still = int(proof.refused[0]), np.zeros(3)
     pairs = (
         proof.prover.nearest(piece, still, still, 0.5),
@@ -151,4 +181,6 @@ def _unproven(problem: Problem, motion: Motion, refused: list[CurveProof]) -> Ex
     )
     contact = named(problem.obstacles, min(pairs, key=lambda each: each.distance))
     edge = int(np.ceil((piece + 1.0) / proof.curve.edges * motion.edges))
+    if proof.refusal is not None:
+        return UnprovenCurve(edge, motion.edges, *proof.refusal)
     return UnprovenCurve(edge, motion.edges, contact)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,8 @@ from ffsr_plan.trajectory.flight_limits import FlightLimits
 
 _EARLIEST = 0.5  # share of the curve for an approach that brakes all along its second half
 _FEWEST, _IN_WINDOW = 32, 10  # pieces of a curve, and of its approach
-_SPEED = 0.95  # at the end, relative to the mean: the pace can rise above it until it is on time
+SPEED = 0.95
+"""Of the parameter at the end of a curve, relative to the mean: the pace can rise above it."""
 _LONGER, _MOST = 1.5, 40  # steps of a search, and their number
 _GOOD = 1.01  # relative, of the earliest time
 
@@ -33,8 +35,14 @@ class TimedApproach(NamedTuple):
     flight: CurveFlight | None
 
 
-def _pieces(motion_edges: int, window: float, factor: int) -> int:
-    """Number of pieces of a curve: a multiple of the motion's edges, with enough for the window."""
+def pieces_for(motion_edges: int, window: float, factor: int) -> int:
+    """Number of pieces of a curve: a multiple of the motion's edges, with enough for the window.
+
+    Args:
+        motion_edges: number of edges of the motion.
+        window: share of the curve that leaves the motion.
+        factor: by which there are more pieces than are needed.
+    """
     fewest = max(_FEWEST, int(np.ceil(_IN_WINDOW / window)))
     return factor * motion_edges * -(-fewest // motion_edges)
 
@@ -54,8 +62,8 @@ def timed_approach(
     Raises:
         InvalidInput: a limit that is needed and not given, or a twist that cannot be.
     """
-    pieces = _pieces(arrival.motion.edges, window, factor)
-    speed = _SPEED * pieces / at
+    pieces = pieces_for(arrival.motion.edges, window, factor)
+    speed = SPEED * pieces / at
     try:
         found = Approach(arrival, pieces, window, speed).found()
     except IntegrationError:  # joints that turn many times over, for a very late meeting
@@ -86,6 +94,16 @@ def earliest(arrival: Arrival, limits: FlightLimits, late: float) -> float | Non
     def possible(time: float) -> bool:
         return timed_approach(arrival, limits, time, _EARLIEST).flight is not None
 
+    return first_possible(possible, late)
+
+
+def first_possible(possible: Callable[[float], bool], late: float) -> float | None:
+    """The shortest time [s] in which something is possible, to 1 %; None if there is none at all.
+
+    Args:
+        possible: whether it is in a time [s].
+        late: a time in which it is not [s].
+    """
     early, time = late, late
     for _ in range(_MOST):
         early, time = time, time * _LONGER

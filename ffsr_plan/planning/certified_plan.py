@@ -15,7 +15,7 @@ from ffsr_plan.core.cost_estimate import check_memory
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import html_table, proven
 from ffsr_plan.core.text_files import write_text
-from ffsr_plan.planning.own_pace import refuse_another_pace
+from ffsr_plan.planning.scenes_at_rest import refuse_bodies
 from ffsr_plan.planning.timing import Timing
 from ffsr_plan.plans import plan_file
 from ffsr_plan.plans.plan_data import PlanData
@@ -24,6 +24,7 @@ from ffsr_plan.trajectory.csv_tables import BYTES_PER_CELL, path_table, write_cs
 
 if TYPE_CHECKING:
     from ffsr_plan.display.web.page_server import PageServer
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.planning.smooth_plan import SmoothPlan
@@ -36,15 +37,21 @@ class Plan(Timing, PlanData):
     """A certified whole-body motion. Two plans are equal if all but the computing time is."""
 
     def _flown(
-        self, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting | None
+        self,
+        limits: FlightLimits,
+        corners: str,
+        duration: float | None,
+        ends: Meeting | Departure | None,
     ) -> SmoothFlight | TimedPlan:
         from ffsr_plan.planning.flights import smooth_flight, timed_plan
-        from ffsr_plan.planning.met_plan import met_plan
+        from ffsr_plan.planning.flights_in_motion import flown_in_motion
+        from ffsr_plan.planning.smooth_plan import flown_past_bodies
 
-        refuse_another_pace("timed", self.problem)
-        if meeting is not None:
-            return met_plan(self, limits, corners, duration, meeting)
+        if ends is not None:
+            return flown_in_motion(self, limits, corners, duration, ends)
         if one_of("corners", corners, ("smooth", "rest")) == "smooth":
+            if self.problem.scene.moves:
+                return flown_past_bodies(self, limits, duration)
             return smooth_flight(self.smooth(), limits, duration)
         if duration is not None:
             raise InvalidInput("duration", duration, "None with corners='rest'")
@@ -55,15 +62,14 @@ class Plan(Timing, PlanData):
 
         The nodes become control points of a cubic spline. Where it comes too close to something,
         more control points are taken, or in the last resort the plan's own path with rests; `kind`
-        of the result tells which.
+        of the result tells which. Past bodies that move it is proven for the times of the plan: the
+        curve is where it belongs to a node when the plan is there.
 
         Raises:
-            InvalidInput: bodies of the scene move: the plan is proven at its own pace alone.
             UnprovenCurve: nothing could be proven, not even the plan's path with rests.
         """
         from ffsr_plan.planning.smooth_plan import smoothed
 
-        refuse_another_pace("smooth", self.problem)
         return smoothed(self)
 
     def least_fuel(self, margin: float = 0.0) -> SmoothPlan:
@@ -85,7 +91,7 @@ class Plan(Timing, PlanData):
         """
         from ffsr_plan.planning.smooth_plan import least_fuel
 
-        refuse_another_pace("least_fuel", self.problem)
+        refuse_bodies("least_fuel", self.problem)
         return least_fuel(self, margin)
 
     def verify(

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ffsr_plan.bodies.pace import slip
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.flight_search.straight_flights import straight_flight
 from ffsr_plan.planning.flight_pictures import FlightPictures
 from ffsr_plan.planning.smooth_data import SmoothPlanData
 from ffsr_plan.plans.plan_data import PlanData
@@ -16,6 +18,7 @@ from ffsr_plan.trajectory.straight_flight import change_of_place, straight_delta
 from ffsr_plan.trajectory.timed_motion import TimedMotion, timed
 
 if TYPE_CHECKING:
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.verification.flights.verify_flight import FlightReport
 
@@ -43,10 +46,21 @@ class TimedPlan(FlightPictures, TimedMotion):
             whole motion.
         problem: robot, obstacles, start and goal.
         limits: those that the flight keeps.
+        least_clearance: proven lower bound on the clearance all along the path, from bodies that
+            move at the flight's own times, a wait at the start included [m].
     """
 
     problem: Problem
     limits: FlightLimits
+    least_clearance: float
+
+    @property
+    def slip(self) -> float:
+        """Time by which the whole flight may be early or late and is still free of bodies [s].
+
+        See `Plan.slip`; what pulses cut off corners counts.
+        """
+        return slip(self.problem.scene.moving, self.least_clearance - self.corner_cut)
 
     @property
     def straight_delta_v(self) -> float:
@@ -61,10 +75,17 @@ class TimedPlan(FlightPictures, TimedMotion):
         """None: it ends at rest."""
         return None
 
+    @property
+    def departure(self) -> None:
+        """None: it begins at rest."""
+        return None
+
     def verify(self) -> FlightReport:
         """Check the flight by other code than the planner's; see `FlightReport`."""
         from ffsr_plan.verification.flights import verify_flight as check
 
+        if self.problem.scene.moves:
+            return check.verify_flight(self, self.least_clearance)
         cut, obstacles = self.corner_cut, len(self.problem.scene)
         return check.verify_flight(self, check.clearance_to_confirm(cut, obstacles))
 
@@ -73,7 +94,7 @@ class TimedPlan(FlightPictures, TimedMotion):
 class SmoothFlight(FlightPictures, CurveFlight):
     """A plan flown along its smooth curve, at rest at its ends only; made by `Plan.timed`.
 
-    With a meeting it is not at rest at its end.
+    With a meeting it is not at rest at its end, with a departure not at its begin.
 
     Attributes:
         curve: the curve.
@@ -88,16 +109,31 @@ class SmoothFlight(FlightPictures, CurveFlight):
             `with rests` has them where its path bends.
         limits: those that the flight keeps.
         meeting: what it arrives with; None for a rest.
+        departure: the state that it begins in; None for a rest.
     """
 
     smooth_plan: SmoothPlanData
     limits: FlightLimits
     meeting: Meeting | None = None
+    departure: Departure | None = None
 
     @property
     def problem(self) -> Problem:  # type: ignore[override]  # handed on, not kept twice
         """Robot, obstacles, start and goal."""
         return self.smooth_plan.plan.problem
+
+    @property
+    def least_clearance(self) -> float:
+        """Proven lower bound on the clearance all along the flight [m]; see `TimedPlan`."""
+        return self.smooth_plan.certificate.least_clearance
+
+    @property
+    def slip(self) -> float:
+        """Time by which the whole flight may be early or late and is still free of bodies [s].
+
+        See `Plan.slip`.
+        """
+        return self.smooth_plan.slip
 
     def verify(self) -> FlightReport:
         """Check the flight by other code than the planner's; see `FlightReport`."""
@@ -108,16 +144,25 @@ class SmoothFlight(FlightPictures, CurveFlight):
 
 def timed_plan(plan: PlanData, limits: FlightLimits) -> TimedPlan:
     """A plan flown within limits, with rests or pulses at its corners; see `Plan.timed`."""
-    flight = timed(plan.motion, limits, plan.certificate.least_clearance)
-    return TimedPlan(**vars(flight), problem=plan.problem, limits=limits)
+    if plan.problem.scene.moves:
+        flight, least = straight_flight(plan.problem, plan.motion, limits)
+    else:
+        least = plan.certificate.least_clearance
+        flight = timed(plan.motion, limits, least)
+    return TimedPlan(**vars(flight), problem=plan.problem, limits=limits, least_clearance=least)
 
 
 def smooth_flight(
     smooth: SmoothPlanData, limits: FlightLimits, duration: float | None
 ) -> SmoothFlight:
-    """A smooth plan flown within limits; see `Plan.timed`."""
+    """A smooth plan flown within limits, past scenes at rest; see `Plan.timed`."""
+    refuse_pulses(limits)
+    flight = curve_flight(smooth.curve, limits, duration)
+    return SmoothFlight(**vars(flight), smooth_plan=smooth, limits=limits)
+
+
+def refuse_pulses(limits: FlightLimits) -> None:
+    """Raise `InvalidInput` for pulses along a smooth curve."""
     if limits.velocity_jump > 0.0:
         allowed = "0 along a smooth curve, which has no corners; or corners='rest'"
         raise InvalidInput("velocity_jump", limits.velocity_jump, allowed)
-    flight = curve_flight(smooth.curve, limits, duration)
-    return SmoothFlight(**vars(flight), smooth_plan=smooth, limits=limits)

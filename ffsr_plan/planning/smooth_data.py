@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.bodies.pace import slip
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import finite_array, number
 from ffsr_plan.core.errors import InvalidInput
@@ -33,7 +34,8 @@ class SmoothPlanData:
         curve: the curve. Its parameter runs from 0 to the number of its pieces.
         kind: what the curve is: a `spline` whose control points are the plan's nodes, a `refined
             spline` with more of them, the spline `through` the nodes, the plan's path `with rests`
-            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting`.
+            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting` or
+            begins with a `departure`.
         nodes: (m + 1,) parameters of the curve that belong to the plan's nodes.
         length: L by its definition for paths [m]; shorter than the plan's but for `through`.
         objective: F by its definition for paths [length units]. It may be a little larger than the
@@ -56,6 +58,14 @@ class SmoothPlanData:
     def problem(self) -> Problem:
         """Robot, obstacles, start and goal."""
         return self.plan.problem
+
+    @property
+    def slip(self) -> float:
+        """Time by which the whole motion may be early or late and is still free of bodies [s].
+
+        At the pace of the plan, or of the flight that this belongs to; see `Plan.slip`.
+        """
+        return slip(self.problem.scene.moving, self.certificate.least_clearance)
 
     @cached_property
     def change(self) -> float:

@@ -11,6 +11,7 @@ from ffsr_plan.core.arrays import Array, frozen
 from ffsr_plan.core.checks import number, one_of
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.curves.smooth_curve import SmoothCurve
+from ffsr_plan.flight_search.curve_flights import FlownCurve, flight_along, flight_on_curve
 from ffsr_plan.fuel.curve_refinement import refined_curve
 from ffsr_plan.lattice.certificate import Certificate
 from ffsr_plan.planning.smooth_data import SmoothPlanData
@@ -21,6 +22,7 @@ from ffsr_plan.smoothing.curve_proof import prove_curve
 from ffsr_plan.smoothing.proven_curve import ProvenCurve, proven_curve
 
 if TYPE_CHECKING:
+    from ffsr_plan.meetings.departure import Departure
     from ffsr_plan.meetings.meeting import Meeting
     from ffsr_plan.planning.flights import SmoothFlight, TimedPlan
     from ffsr_plan.trajectory.flight_limits import FlightLimits
@@ -31,14 +33,16 @@ class SmoothPlan(Timing, SmoothPlanData):
     """A whole-body motion without corners, proven free of collisions, the base's reaction included.
 
     Velocity and acceleration are continuous in the curve's parameter. Start and goal are those of
-    the plan; a goal attitude that is demanded is reached again. That of a meeting ends with it.
+    the plan; a goal attitude that is demanded is reached again. That of a meeting ends with it,
+    that of a departure begins with it.
 
     Attributes:
         plan: the plan that was smoothed.
         curve: the curve. Its parameter runs from 0 to the number of its pieces.
         kind: what the curve is: a `spline` whose control points are the plan's nodes, a `refined
             spline` with more of them, the spline `through` the nodes, the plan's path `with rests`
-            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting`.
+            at its bends, one of `least fuel` beside it, or a spline that ends with a `meeting` or
+            begins with a `departure`.
         nodes: (m + 1,) parameters of the curve that belong to the plan's nodes.
         length: L by its definition for paths [m]; shorter than the plan's but for `through`.
         objective: F by its definition for paths [length units]. It may be a little larger than the
@@ -49,14 +53,22 @@ class SmoothPlan(Timing, SmoothPlanData):
     """
 
     def _flown(
-        self, limits: FlightLimits, corners: str, duration: float | None, meeting: Meeting | None
+        self,
+        limits: FlightLimits,
+        corners: str,
+        duration: float | None,
+        ends: Meeting | Departure | None,
     ) -> SmoothFlight | TimedPlan:
-        from ffsr_plan.planning.flights import smooth_flight
+        from ffsr_plan.planning.flights import refuse_pulses, smooth_flight
 
-        if meeting is not None:
-            raise InvalidInput("meeting", meeting, "None along a smooth plan; see Plan.timed")
+        if ends is not None:
+            raise InvalidInput(ends.word, ends, "None along a smooth plan; see Plan.timed")
         if one_of("corners", corners, ("smooth", "rest")) == "rest":
             raise InvalidInput("corners", corners, "smooth: a smooth plan has none to rest at")
+        if self.problem.scene.moves:
+            refuse_pulses(limits)
+            found = flight_on_curve(self.problem, self, self.plan.motion, limits, duration)
+            return _flight(self.plan, found, limits)
         return smooth_flight(self, limits, duration)
 
 
@@ -106,6 +118,21 @@ def least_fuel(plan: PlanData, margin: float) -> SmoothPlan:
     return plain
 
 
+def flown_past_bodies(plan: PlanData, limits: FlightLimits, duration: float | None) -> SmoothFlight:
+    """The plan flown along a smooth curve past bodies that move; see `Plan.timed`."""
+    from ffsr_plan.planning.flights import refuse_pulses
+
+    refuse_pulses(limits)
+    return _flight(plan, flight_along(plan.problem, plan.motion, limits, duration), limits)
+
+
+def _flight(plan: PlanData, found: FlownCurve, limits: FlightLimits) -> SmoothFlight:
+    from ffsr_plan.planning.flights import SmoothFlight
+
+    smooth = smooth_plan(plan, found.proven)
+    return SmoothFlight(**vars(found.flight), smooth_plan=smooth, limits=limits)
+
+
 def _directions(plan: PlanData) -> Array:
     """(axes, 3) directions of displacements: along the way and those of a lattice, or all."""
     way = plan.problem.base_displacement
@@ -131,7 +158,7 @@ def smooth_plan(plan: PlanData, found: ProvenCurve, margin: float = 0.0) -> Smoo
         kind=found.kind,
         nodes=frozen(found.nodes),
         length=float(lengths.sum()),
-        objective=curve_objective(problem, curve, found.nodes[1:-1], lengths),
+        objective=curve_objective(problem, curve, found.nodes[1:-1], lengths, found.proof.times),
         clearances=frozen(found.proof.clearances),
         certificate=_certificate(problem.robot.unchecked_links, found, margin),
     )

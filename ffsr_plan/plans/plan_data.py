@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ffsr_plan.bodies.pace import slip
 from ffsr_plan.core.arrays import Array, IntArray, frozen
 from ffsr_plan.core.checks import finite_array
 from ffsr_plan.core.errors import InvalidInput
@@ -124,8 +125,7 @@ class PlanData:
         The robot is then where it was proven free, and no body has come nearer than it can move in
         that time. Infinite where nothing moves.
         """
-        fastest = max((each.speed for each in self.problem.scene.moving), default=0.0)
-        return self.certificate.least_clearance / fastest if fastest > 0.0 else np.inf
+        return slip(self.problem.scene.moving, self.certificate.least_clearance)
 
     @property
     def gap(self) -> float:

@@ -21,15 +21,15 @@ import numpy as np
 
 from ffsr_plan.bodies.body_motion import Drift, Spin
 from ffsr_plan.bodies.moving_body import MovingBody
-from ffsr_plan.bodies.pace import Pace
+from ffsr_plan.bodies.pace import Timetable
 from ffsr_plan.bodies.tumble import Tumble
-from ffsr_plan.collision.body_distances import in_axes
+from ffsr_plan.collision.body_distances import in_axes, moved_aside
 from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.debris.debris_distances import DebrisDistances
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
 from ffsr_plan.core import rotations
-from ffsr_plan.core.arrays import Array, IntArray
+from ffsr_plan.core.arrays import Array, Flags, IntArray
 from ffsr_plan.proof.edge_travel import EdgeTravel
 from ffsr_plan.proof.interval_halving import Verdict, certify, clearance_bound
 from ffsr_plan.proof.motion_edges import NominalPlacements
@@ -61,9 +61,10 @@ class BodyEdge:
         layer: int,
         offsets: tuple[Array, Array],
         base_step: Array,
-        pace: Pace,
+        pace: Timetable,
         rounding: float,
         slot: int | None = None,
+        aside: Flags | None = None,
     ) -> None:
         """An edge whose ends are displaced from the nominal motion.
 
@@ -78,8 +79,9 @@ class BodyEdge:
             pace: at which edges follow one another.
             rounding: length added to every travel bound [m].
             slot: the edge of the pace whose time the edge takes; by default that of its number.
+            aside: (g,) shapes that may touch the body; None for none.
         """
-        self._slot = layer if slot is None else slot
+        self._slot, self.aside = layer if slot is None else slot, aside
         self._body, self._query, self._placements = body, query, placements
         self._travel, self._layer, self._offsets, self._pace = travel, layer, offsets, pace
         self._parts: dict[float, Array] = {}
@@ -153,8 +155,10 @@ class BodyEdge:
         tail, head = self._offsets
         frames = self._placements.at(time).frames[self._layer : self._layer + 1]
         shift = (1.0 - time) * tail + time * head
-        poses = self._body.poses([self.instant(time)])
-        return in_axes(Placements(frames), poses, shift[None])
+        poses, placed = self._body.poses([self.instant(time)]), Placements(frames)
+        if self.aside is not None:
+            placed = moved_aside(placed, np.ones(1, dtype=np.bool_), self.aside)
+        return in_axes(placed, poses, shift[None])
 
 
 class Passages(NamedTuple):
@@ -258,7 +262,7 @@ class DebrisProof:
         self,
         robot: SpaceRobot,
         scene: Scene,
-        pace: Pace,
+        pace: Timetable,
         bounds: EdgeTravel,
         placements: NominalPlacements,
         rounding: float,
@@ -276,11 +280,12 @@ class DebrisProof:
             deadline: after which measurements raise `OutOfTime`.
         """
         self.pace, self.bounds, self.placements = pace, bounds, placements
-        self.distances = DebrisDistances(robot, scene, 0.5 * pace.duration, deadline)
+        self._instants = pace.instants(np.arange(len(bounds.speeds) + 1.0))
+        middle = 0.5 * float(self._instants[0] + self._instants[-1])
+        self.distances = DebrisDistances(robot, scene, middle, deadline)
         largest = max(float(each.radii.max()) for each in scene.debris) + scene.growth
         self.rounding = rounding + 2.0 * PLACE_ERROR
         self.rounding += iteration_error(robot, Scene(np.zeros((1, 3)), [largest]))
-        self._instants = pace.instants(np.arange(pace.edges + 1.0))
         self.travel = self.distances.fastest * np.diff(self._instants)
 
     def certify(self, placed: Placements, passages: Passages, tolerance: float) -> list[Verdict]:

@@ -7,16 +7,16 @@ clearance by x at most.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ffsr_plan.bodies.pace import Pace
-from ffsr_plan.collision.body_distances import BodyDistances, in_axes
+from ffsr_plan.bodies.pace import Timetable
+from ffsr_plan.collision.body_distances import BodyDistances, in_axes, moved_aside
 from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery
 from ffsr_plan.collision.shape_placements import Placements
-from ffsr_plan.core.arrays import Array, IntArray, frozen, records
+from ffsr_plan.core.arrays import Array, Flags, IntArray, frozen, records
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.body_edge import BodyEdge, DebrisProof, Passages
@@ -71,6 +71,8 @@ class BodyProof:
         """
         from ffsr_plan.proof.kernels import edge_proof
 
+        if edge.aside is not None:  # of which kernels know nothing
+            return certify(edge, ends, tolerance)
         past, memory, intervals, _ = self._compiled
         edge.tabulate(past.passage)
         row = records(edge_proof.EDGE, 1)
@@ -91,7 +93,7 @@ class BodyProof:
         self, edge: BodyEdge, ends: tuple[float, float], least: float, precision: float
     ) -> tuple[float, float]:
         """A lower bound on the clearance along an edge; see `interval_halving.clearance_bound`."""
-        if not self._exact:
+        if not self._exact or edge.aside is not None:
             return clearance_bound(edge, ends, least, precision)
         from ffsr_plan.proof.kernels.path_clearance import edge_clearance
 
@@ -102,6 +104,32 @@ class BodyProof:
         if found - bound > max(precision * found, edge.rounding):  # it takes shorter intervals
             return clearance_bound(edge, ends, least, precision)
         return min(bound, found), found
+
+
+class Touching(NamedTuple):
+    """Shapes that may touch one body, on a part of a motion.
+
+    Attributes:
+        body: number of the body.
+        shapes: (g,) the shapes.
+        edges: (m,) edges on which they may.
+        corners: (m + 1,) ends of edges at which they may; elsewhere on other edges they may not.
+    """
+
+    body: int
+    shapes: Flags
+    edges: Flags
+    corners: Flags
+
+    @classmethod
+    def since(cls, body: int, shapes: Flags, edge: int, edges: int) -> Touching:
+        """From an edge of so many on, but not at its begin."""
+        return cls(body, shapes, np.arange(edges) >= edge, np.arange(edges + 1) > edge)
+
+    @classmethod
+    def until(cls, body: int, shapes: Flags, edge: int, edges: int) -> Touching:
+        """Before an edge of so many, but not at its begin."""
+        return cls(body, shapes, np.arange(edges) < edge, np.arange(edges + 1) < edge)
 
 
 class MovingObstacles:
@@ -117,12 +145,13 @@ class MovingObstacles:
         self,
         motion: Motion | CurvedMotion,
         scene: Scene,
-        pace: Pace,
+        pace: Timetable,
         travel: EdgeTravel,
         placements: NominalPlacements,
         corners: Placements,
         rounding: float,
         deadline: Deadline,
+        touching: Touching | None = None,
     ) -> None:
         """Prepare the measurements.
 
@@ -135,7 +164,9 @@ class MovingObstacles:
             corners: placements at its layers.
             rounding: length added to every travel bound [m].
             deadline: after which measurements raise `OutOfTime`.
+            touching: shapes that may touch a body, at layers and along edges; None for none.
         """
+        self._touching = touching
         self._bodies, self._pace, self._deadline = scene.bodies, pace, deadline
         self._edges, self._steps = motion.edges, motion.base_steps()
         self._travel, self._placements, self._corners = travel, placements, corners
@@ -279,8 +310,10 @@ class MovingObstacles:
         instant = self._pace.instants(np.array([layer + time]))
         pairs = []
         for b, query in enumerate(self._queries):
-            poses = self._bodies[b].poses(instant)
-            seen = in_axes(Placements(frames), poses, shift[None])
+            poses, placed = self._bodies[b].poses(instant), Placements(frames)
+            if (aside := self._aside(b, layer, time == 0.0)) is not None:
+                placed = moved_aside(placed, np.ones(1, dtype=np.bool_), aside)
+            seen = in_axes(placed, poses, shift[None])
             pairs.append(query.nearest_at(seen, 0, np.zeros(3))._replace(obstacle=self._first + b))
         if self._debris is not None:
             measure = self._debris.distances.nearest_at
@@ -297,13 +330,22 @@ class MovingObstacles:
         step = self._steps[layer] + head - tail
         return BodyEdge(
             self._bodies[b], self._queries[b], self._placements, self._travel, layer, (tail, head),
-            step, self._pace, self._roundings[b],
+            step, self._pace, self._roundings[b], aside=self._aside(b, layer),
         )  # fmt: skip
+
+    def _aside(self, b: int, number: int, at_corner: bool = False) -> Flags | None:
+        """(g,) shapes that may touch a body on an edge, or at a corner; None for none."""
+        touching = self._touching
+        if touching is None or touching.body != b:
+            return None
+        return touching.shapes if (touching.edges, touching.corners)[at_corner][number] else None
 
     def _body(self, b: int, parts: int) -> BodyDistances:
         """Distances to one body at the layers or at places inside edges."""
         if (b, parts) not in self._seen:
             placed = self._placements.between(parts) if parts else self._corners
+            if not parts and self._touching is not None and self._touching.body == b:
+                placed = moved_aside(placed, self._touching.corners, self._touching.shapes)
             poses = self._bodies[b].poses(self._instants(parts))
             self._seen[b, parts] = BodyDistances(self._robot, self._queries[b], placed, poses)
         return self._seen[b, parts]

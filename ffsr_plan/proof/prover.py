@@ -6,13 +6,14 @@ those of lattice nodes during a search, any others during refinement.
 
 from __future__ import annotations
 
+from copy import copy
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ffsr_plan.bodies.pace import Pace
+from ffsr_plan.bodies.pace import Timetable
 from ffsr_plan.collision.coal_measures import iteration_error
 from ffsr_plan.collision.contacts import goal_in_collision, named, start_in_collision
 from ffsr_plan.collision.distances import Nearest, ObstacleQuery
@@ -29,7 +30,7 @@ from ffsr_plan.proof.motion_edges import (
     ObstacleEdge,
     odd_times,
 )
-from ffsr_plan.proof.moving_obstacles import MovingObstacles, worse
+from ffsr_plan.proof.moving_obstacles import MovingObstacles, Touching, worse
 from ffsr_plan.proof.sampled_edges import sample_edges
 from ffsr_plan.proof.self_collision_proof import LinkProof
 from ffsr_plan.scene.scene import Scene
@@ -58,7 +59,8 @@ class Prover:
         scene: Scene,
         tolerance: float,
         deadline: Deadline | None = None,
-        pace: Pace | None = None,
+        pace: Timetable | None = None,
+        touching: Touching | None = None,
     ) -> None:
         """Prepare the proofs.
 
@@ -68,11 +70,12 @@ class Prover:
             tolerance: clearance below which an edge may be refused [m].
             deadline: after which distance queries, and so all proofs, raise `OutOfTime`.
             pace: at which the motion is run; without it no body may move.
+            touching: shapes that may touch a body that moves; None for none.
 
         Raises:
             InvalidInput: bodies move, and there is no pace.
         """
-        self._motion, self._scene, self.tolerance, self._pace = nominal, scene, tolerance, pace
+        self._motion, self._scene, self.tolerance = nominal, scene, tolerance
         self._deadline = deadline or Deadline()
         self._deadline.check()
         self._fixed = scene if pace is None else scene.at_rest
@@ -81,19 +84,33 @@ class Prover:
         self.links = LinkProof(nominal, self._travel, tolerance, self._deadline)
         self._placements = NominalPlacements(nominal)
         self._corners = shape_placements(nominal.robot, nominal.configurations())
-        self.speeds = self._own_speeds = self._travel.speeds
-        rounding = ROUNDING + self._travel.attitude_error
+        self._own_speeds = self._travel.speeds
         iterated = iteration_error(nominal.robot, self._fixed)
         self._exact = iterated == 0.0
-        self.rounding = self._rounding = rounding + iterated
+        self._rounding = ROUNDING + self._travel.attitude_error + iterated
+        self._run_at(pace, touching)
+
+    def _run_at(self, pace: Timetable | None, touching: Touching | None = None) -> None:
+        """Prepare the proofs past bodies that move, at a pace."""
+        self._pace, self.speeds, self.rounding = pace, self._own_speeds, self._rounding
         self._moving: MovingObstacles | None = None
-        if pace is not None and scene.moves:
+        if pace is not None and self._scene.moves:
             self._moving = MovingObstacles(
-                nominal, scene, pace, self._travel, self._placements, self._corners, rounding,
-                self._deadline,
+                self._motion, self._scene, pace, self._travel, self._placements, self._corners,
+                ROUNDING + self._travel.attitude_error, self._deadline, touching,
             )  # fmt: skip
             self.speeds = self.speeds + self._moving.travel
             self.rounding = max(self._rounding, self._moving.rounding)
+
+    def at_pace(self, pace: Timetable) -> Prover:
+        """The same proofs at another pace; all that does not depend on it is shared.
+
+        Args:
+            pace: the other pace; this prover has one already if bodies move.
+        """
+        other = copy(self)
+        other._run_at(pace)
+        return other
 
     @property
     def queries(self) -> int:

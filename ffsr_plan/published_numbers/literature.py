@@ -7,6 +7,7 @@ from collections.abc import Callable
 from ffsr_plan.published_numbers import (
     air_bearing_robot,
     bodies_of_table_1,
+    double_bridge,
     dual_arm_satellite,
     ets_vii,
     free_panda,
@@ -25,6 +26,7 @@ SOURCES: tuple[Callable[[], list[RecomputedNumber]], ...] = (
     ets_vii.recomputed,
     linkage_travel.recomputed,
     bodies_of_table_1.recomputed,
+    double_bridge.recomputed,
 )
 """One function for each publication, in the order of the table."""
 

@@ -283,6 +283,11 @@ class Scene:
         """The obstacles that move."""
         return self.bodies + self.debris
 
+    @property
+    def known_until(self) -> float:
+        """Time up to which the motions of all bodies are known [s]."""
+        return min((body.motion.known_until for body in self.bodies), default=np.inf)
+
     @cached_property
     def body_scenes(self) -> tuple[Scene, ...]:
         """The shapes of each body along its own axes, at rest there, grown like all others."""
@@ -292,10 +297,7 @@ class Scene:
         """All obstacles where they are at one time, at rest there.
 
         Args:
-            time: [s], up to which the motions of all bodies are known.
-
-        Returns:
-            A scene of the same spheres, then those of debris; and shapes, then those of bodies.
+            time: [s]; spheres of debris follow the spheres, shapes of bodies the shapes.
         """
         if not self.moves:
             return self
@@ -305,6 +307,12 @@ class Scene:
         if self.debris:
             there += Scene(*spheres_at(self.debris, self.growth, time), sources=self._clouds)
         return there
+
+    def later(self, time: float) -> Scene:
+        """The same scene from a later instant [s] on, which becomes time zero."""
+        bodies = [body.later(time) for body in self.bodies]
+        debris = [cloud.later(time) for cloud in self.debris]
+        return replace(self, bodies=bodies, debris=debris)  # type: ignore[arg-type]
 
     @property
     def is_closed_form(self) -> bool:

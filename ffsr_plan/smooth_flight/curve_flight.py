@@ -22,6 +22,7 @@ from ffsr_plan.smooth_flight.timed_curve import SMALLEST_RATE, pace_within
 from ffsr_plan.trajectory.flight import Flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits
 from ffsr_plan.trajectory.straight_flight import change_of_place, straight_delta_v
+from ffsr_plan.trajectory.timetables import LawTimes
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # on each piece of the law
 
@@ -115,6 +116,11 @@ class CurveFlight(Flight):
         instants = self._instants(times)
         return _states(self.curve, self._pace, instants)
 
+    @property
+    def timetable(self) -> LawTimes:
+        """The times at the places of its curve, without waits."""
+        return self._pace.timetable(self.curve.pieces)
+
     def pulse_accelerations(self, times: ArrayLike) -> Array:
         """(N, 3) zeros at times (N,), as in `TimedPlan` between its pulses [m/s^2].
 
@@ -156,8 +162,24 @@ def curve_flight(
     Raises:
         InvalidInput: see `pace_within`.
     """
-    pace, strength = pace_within(curve, limits, duration, ends), float(limits.acceleration[0])
-    straight = _straight_delta_v(curve, pace.duration, strength)
+    return flight_at(curve, limits, pace_within(curve, limits, duration, ends), ends)
+
+
+def flight_at(
+    curve: Curve,
+    limits: FlightLimits,
+    pace: Pace,
+    ends: EndSpeeds = EndSpeeds(),  # noqa: B008 - it is immutable
+) -> CurveFlight:
+    """A curve flown at a pace that keeps the limits.
+
+    Args:
+        curve: the curve.
+        limits: the limits.
+        pace: the pace.
+        ends: s' at both ends [1/s].
+    """
+    straight = _straight_delta_v(curve, pace.duration, float(limits.acceleration[0]))
     if ends != EndSpeeds():
         straight = _delta_v_of_two_pulses(curve, pace)
     return CurveFlight(

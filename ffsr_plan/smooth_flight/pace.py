@@ -8,6 +8,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.trajectory.cubic_pieces import evaluate
+from ffsr_plan.trajectory.timetables import LawTimes
 
 _HALVINGS = 60  # of a piece, to the last digit of a time
 
@@ -47,9 +48,18 @@ class Pace(NamedTuple):
             low, high = np.where(passed, low, middle), np.where(passed, middle, high)
         return low
 
+    def timetable(self, pieces: int) -> LawTimes:
+        """The times at the places of a curve of so many pieces, without waits."""
+        return LawTimes(self.times, self.begin, np.arange(pieces + 1.0))
+
     def slowed(self, factor: float) -> Pace:
         """The law with all durations multiplied by a factor."""
         return Pace(self.times * factor, self.begin / factor ** np.arange(4))
+
+    def after(self, wait: float) -> Pace:
+        """The law after a wait at its start [s], a piece of its own."""
+        first = [[self.begin[0, 0], 0.0, 0.0, 0.0]]
+        return Pace(np.append(0.0, self.times + wait), np.vstack([first, self.begin]))
 
     def ending_at(self, time: float) -> Pace:
         """The same law with its last time [s] to the last digit; it differs by rounding alone."""

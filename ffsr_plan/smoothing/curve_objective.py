@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ffsr_plan.bodies.pace import Timetable
+from ffsr_plan.collision.body_distances import BodyDistances
+from ffsr_plan.collision.debris.debris_distances import DebrisDistances
 from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.curves.curved_motion import CurvedMotion
 from ffsr_plan.curves.splines import evaluate
@@ -63,7 +67,13 @@ def edge_lengths(problem: Problem, motion: Motion) -> Array:
     return lengths
 
 
-def curve_objective(problem: Problem, curve: CurvedMotion, nodes: Array, lengths: Array) -> float:
+def curve_objective(
+    problem: Problem,
+    curve: CurvedMotion,
+    nodes: Array,
+    lengths: Array,
+    times: Timetable | None = None,
+) -> float:
     """F of a curve.
 
     Args:
@@ -71,15 +81,26 @@ def curve_objective(problem: Problem, curve: CurvedMotion, nodes: Array, lengths
         curve: the curve.
         nodes: parameters, in pieces, of the inner nodes of a lattice; not used without one.
         lengths: of `curve_lengths` [m].
+        times: at which the curve is where; None where no body moves.
 
     Returns:
         F [length units].
     """
     parameters = nodes if problem.lattice is not None else _stations(lengths)
     piece = np.minimum(parameters.astype(np.int64), curve.edges - 1)
-    query = ObstacleQuery(problem.robot, problem.obstacles)
-    clearances = query.distances(curve.at(piece, parameters - piece))
-    ends = np.array([np.inf])
+    q, scene, ends = curve.at(piece, parameters - piece), problem.obstacles, np.array([np.inf])
+    clearances = ObstacleQuery(problem.robot, scene.at_rest).distances(q)
+    if times is not None and scene.moves:
+        placed, rows = shape_placements(problem.robot, q), np.arange(len(q))
+        instants, still = times.instants(parameters), np.zeros((len(q), 3))
+        for body, own in zip(scene.bodies, scene.body_scenes, strict=True):
+            query, poses = ObstacleQuery(problem.robot, own), body.poses(instants)
+            seen = BodyDistances(problem.robot, query, placed, poses)
+            clearances = np.minimum(clearances, seen.distances(rows, still))
+        if scene.debris:
+            debris = DebrisDistances(problem.robot, scene, float(instants.mean()))
+            at_once = np.zeros(len(q))
+            clearances = debris.least(placed, rows, still, instants, at_once, clearances)
     return objective(problem, float(lengths.sum()), np.concatenate([ends, clearances, ends]))
 
 

@@ -15,7 +15,8 @@ edges also bends sharply: `benchmarks.studies.planners.smooth_curves` compares t
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from functools import partial
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -29,8 +30,11 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.smoothing.curve_objective import edge_lengths
 from ffsr_plan.smoothing.curve_proof import CurveProof, prove_curve
 from ffsr_plan.smoothing.goal_attitude import curve_to_attitude
+from ffsr_plan.trajectory.timetables import NodeTimes
 
-Kind = Literal["spline", "refined spline", "through", "with rests", "least fuel", "meeting"]
+Kind = Literal[
+    "spline", "refined spline", "through", "with rests", "least fuel", "meeting", "departure"
+]
 """What a smooth curve is: see `proven_curve`, `fuel.curve_refinement`, and `meetings`."""
 _BESIDE_REFUSED, _ROUNDS = 3, 7  # rounds of refinement beside what was refused, and in all
 _LEAST_SHARE = 0.1  # of the mean edge, by which nodes that are control points are apart
@@ -64,25 +68,40 @@ class _Candidate(NamedTuple):
     nodes: Array
 
 
-def proven_curve(problem: Problem, motion: Motion) -> ProvenCurve:
+class Proof(Protocol):
+    """How a curve is proven."""
+
+    def __call__(self, curve: CurvedMotion, nodes: Array, tolerance: float) -> CurveProof:
+        """The proof of a curve, some of whose pieces may be refused.
+
+        Args:
+            curve: the curve.
+            nodes: (n + 1,) its parameters, in pieces, that belong to the nodes of the path.
+            tolerance: clearance below which a piece may be refused [m].
+        """
+
+
+def proven_curve(problem: Problem, motion: Motion, prove: Proof | None = None) -> ProvenCurve:
     """A smooth curve along the proven motion of a plan.
 
     Args:
         problem: what was planned.
         motion: the motion of the plan.
+        prove: how curves are proven; by default at the pace of the plan.
 
     Raises:
         UnprovenCurve: not even the path itself could be proven.
         IntegrationError: the reaction along a curve cannot be integrated.
     """
     tried: list[CurveProof | None] = []
+    chosen: Proof = prove or partial(_at_own_pace, problem)
     whole = np.arange(motion.edges + 1.0)
     parameters = _apart(edge_lengths(problem, motion))
     for attempt in range(1 + _ROUNDS):
         nodes = np.interp(whole, parameters, np.arange(float(len(parameters))))
         control = control_points_on(motion, parameters)
         spline = _Candidate("refined spline" if attempt else "spline", control, nodes)
-        found = _attempt(problem, motion, spline, tried)
+        found = _attempt(problem, motion, spline, tried, chosen)
         if found is not None:
             return found
         beside = _beside_bends(control)
@@ -93,14 +112,27 @@ def proven_curve(problem: Problem, motion: Motion) -> ProvenCurve:
     control = control_points_on(motion, whole)
     through = _Candidate("through", control.through(), whole)
     for candidate in (through, _with_rests(control)):
-        found = _attempt(problem, motion, candidate, tried)
+        found = _attempt(problem, motion, candidate, tried, chosen)
         if found is not None:
             return found
     raise _unproven(problem, motion, candidate.nodes, tried[-1])
 
 
+def _at_own_pace(
+    problem: Problem, curve: CurvedMotion, nodes: Array, tolerance: float
+) -> CurveProof:
+    """The proof at the pace at which the path was planned, where it has one."""
+    pace = problem.pace(len(nodes) - 1)
+    times = None if pace is None else NodeTimes(nodes, pace)
+    return prove_curve(problem, curve, tolerance, times)
+
+
 def _attempt(
-    problem: Problem, motion: Motion, candidate: _Candidate, tried: list[CurveProof | None]
+    problem: Problem,
+    motion: Motion,
+    candidate: _Candidate,
+    tried: list[CurveProof | None],
+    prove: Proof,
 ) -> ProvenCurve | None:
     """The candidate if it is proven free; otherwise it is added to those that were tried.
 
@@ -114,7 +146,8 @@ def _attempt(
     if curve is None:
         tried.append(None)
         return None
-    proof = prove_curve(problem, curve, _LEAST_TOLERANCE if at_rest else problem.tolerance)
+    tolerance = _LEAST_TOLERANCE if at_rest else problem.tolerance
+    proof = prove(curve, candidate.nodes, tolerance)
     if len(proof.refused):
         tried.append(proof)
         return None
@@ -201,5 +234,7 @@ def _unproven(
         proof.prover.nearest(piece, still, still, 0.5),
         proof.prover.links.nearest(piece, 0.5),
     )
-    contact = named(problem.obstacles, min(pairs, key=lambda each: each.distance))
-    return UnprovenCurve(edge + 1, motion.edges, contact)
+    contact, time = named(problem.obstacles, min(pairs, key=lambda each: each.distance)), None
+    if proof.refusal is not None and problem.scene.moves:
+        contact, time = proof.refusal
+    return UnprovenCurve(edge + 1, motion.edges, contact, time)

@@ -81,6 +81,12 @@ class TimeLaw(NamedTuple):
         times = np.concatenate([[0.0], np.cumsum(np.diff(self.times) * factors)])
         return TimeLaw(times, self.begin / factors[:, None] ** np.arange(4), self.run)
 
+    def after(self, wait: float) -> TimeLaw:
+        """The law after a wait at its start [s], a piece of its own."""
+        first = [[self.begin[0, 0], 0.0, 0.0, 0.0]]
+        times = np.append(0.0, self.times + wait)
+        return TimeLaw(times, np.vstack([first, self.begin]), np.append(self.run[:1], self.run))
+
 
 class PulseLimits(NamedTuple):
     """Limits on the pulses of the thrusters at corners.

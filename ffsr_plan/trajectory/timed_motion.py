@@ -17,8 +17,8 @@ collision.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -35,6 +35,10 @@ from ffsr_plan.trajectory.flight import Flight
 from ffsr_plan.trajectory.flight_limits import FlightLimits, check_limits
 from ffsr_plan.trajectory.straight_runs import StraightRuns, straight_runs
 from ffsr_plan.trajectory.time_law import PulseLimits, TimeLaw, time_law
+from ffsr_plan.trajectory.timetables import LawTimes
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 _NODES = 16  # of Gauss-Lobatto quadrature, which includes both ends of a piece
 _LARGEST_JOINT_STEP = 0.2  # [rad or m] between two sets of quadrature nodes
@@ -120,6 +124,34 @@ class TimedMotion(Flight):
         instants = self._instants(times)
         return _states(self.motion, self._runs, self._law, self._law.piece(instants), instants)
 
+    @property
+    def timetable(self) -> LawTimes:
+        """The times at the places of its path, without waits."""
+        return LawTimes(self._law.times, self._law.begin, self._runs.corners)
+
+    def slowed(self, factor: float) -> Self:
+        """The same flight with all durations multiplied by a factor of at least one.
+
+        Pulses cut corners by as much, and no limit is exceeded: in free flight all forces are
+        proportional to the square of the pace.
+        """
+        return replace(
+            self,
+            delta_v=self.delta_v / factor,
+            rests=frozen(self.rests * factor),
+            pulse_times=frozen(self.pulse_times * factor),
+            pulse_durations=frozen(self.pulse_durations * factor),
+            pulses=frozen(self.pulses / factor),
+            _law=self._law.slowed(np.full(len(self._law.run), factor)),
+        )
+
+    def after(self, wait: float) -> Self:
+        """The same flight after a wait at the start [s]."""
+        if wait == 0.0:
+            return self
+        rests, pulse_times = frozen(self.rests + wait), frozen(self.pulse_times + wait)
+        return replace(self, rests=rests, pulse_times=pulse_times, _law=self._law.after(wait))
+
     def pulse_accelerations(self, times: ArrayLike) -> Array:
         """Acceleration of the base by pulses, to be added to that of `at`; zero between pulses.
 
@@ -170,7 +202,7 @@ def timed(motion: Motion, limits: FlightLimits, clearance: float) -> TimedMotion
     slowed = law.slowed(factors[law.run])
     corners, slower = _corner_times(slowed, runs), factors[1:][passed]
     cut = pulses.corner_cut()
-    _check_corner_cut(cut, limits, clearance)
+    check_corner_cut(cut, limits, clearance)
     return TimedMotion(
         motion=motion,
         delta_v=float(np.sum(push / factors[law.run])),
@@ -217,8 +249,14 @@ def _corner_times(law: TimeLaw, runs: StraightRuns) -> Array:
     return law.times[np.searchsorted(law.run, np.arange(1, len(runs.first)))]
 
 
-def _check_corner_cut(cut: float, limits: FlightLimits, clearance: float) -> None:
-    """Raise `InvalidInput` if pulses cut corners by more than the clearance."""
+def check_corner_cut(cut: float, limits: FlightLimits, clearance: float) -> None:
+    """Raise `InvalidInput` if pulses cut corners by more than the clearance.
+
+    Args:
+        cut: largest displacement by pulses [m].
+        limits: those of the flight.
+        clearance: proven along its path [m].
+    """
     if cut == 0.0 or cut < clearance:
         return
     strength, available = limits.acceleration[0], max(clearance, 0.0)

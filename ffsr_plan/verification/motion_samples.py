@@ -73,6 +73,22 @@ class Samples(NamedTuple):
         )
 
 
+class MayTouch(NamedTuple):
+    """Links that may touch a moving body at the end or at the begin of a motion.
+
+    Attributes:
+        links: their names.
+        body: number of the body, from 1 on.
+        since: after this time they may, which is that of an even sample [s].
+        until: before this time they may, alike [s].
+    """
+
+    links: tuple[str, ...]
+    body: int
+    since: float
+    until: float
+
+
 class Course(Protocol):
     """A motion in m edges, and bounds on its speeds; what `sweep` measures along.
 
@@ -84,6 +100,7 @@ class Course(Protocol):
         base_speeds: (m,) bound on the speed of a base that thrusters move [m per edge].
         held_turns: (m,) bound on the angular velocity by wheels [rad per edge]; None without.
         moving: the bodies that move.
+        touching: links that may touch one of them; None for none.
     """
 
     problem: Problem
@@ -93,6 +110,7 @@ class Course(Protocol):
     base_speeds: Array
     held_turns: Array | None
     moving: SceneBodies
+    touching: MayTouch | None
 
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on edges (N,)."""
@@ -130,6 +148,7 @@ class Sampler:
         self._duration = self.problem.duration or 0.0
         moving = self.problem.scene.bodies
         self.moving = SceneBodies(moving, self._origin, self._duration)
+        self.touching: MayTouch | None = None
 
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on edges (N,)."""

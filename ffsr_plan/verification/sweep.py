@@ -177,6 +177,11 @@ class _Sweep:
         spare = roundings[self.distances.bodies]
         self._spare = ROUNDING + spare
         self._claim = course.clearance
+        self._touching = course.touching
+        self._ignored: Flags = np.zeros(self.distances.parts, dtype=np.bool_)
+        if self._touching is not None:
+            named = [names[0] in self._touching.links for names in self.distances.names]
+            self._ignored = (self.distances.bodies == self._touching.body) & named
         self._start = course.at(np.zeros(1, dtype=np.int64), np.zeros(1)).centers_of_mass[0]
         self._halvings = 0
         self._nearest: tuple[Samples, int, int] | None = None
@@ -269,6 +274,9 @@ class _Sweep:
         """Distances; the least ones are noted."""
         stretch = edge[which] - self._first_edge
         values = self.distances.at(samples, which, part, stretch, enough)
+        if self._touching is not None:
+            times, may = samples.instants[which], self._touching
+            values[(times > may.since) & (times < may.until) & self._ignored[part]] = np.inf
         outer, found = part < self.distances.outer, self.found
         if outer.any():
             k = int(np.flatnonzero(outer)[np.argmin(values[outer])])

@@ -131,7 +131,7 @@ def verify(plan: PlanData, samples: int = SAMPLES, on_progress: OnProgress | Non
         *_bad_input(plan, bodies),
         *collisions(plan.certificate.least_clearance, swept, timed=problem.duration is not None),
         *other_motion(swept),
-        *_other_bodies(problem, swept),
+        *other_bodies(problem, swept),
         *_broken_momentum(residual, wheel_error, drift),
         *_ends_and_limits(plan),
         *_other_costs(plan, costs),
@@ -188,14 +188,23 @@ def _not_checked(plan: PlanData, path: LatticePath | FreePath, bodies: Bodies) -
     yield "whether the search was interrupted, and its seconds"
     if plan.problem.scene.excess > 0.0:
         yield "that the spheres cover what they stand for, and by how much they exceed it"
-    for body in plan.problem.scene.bodies:
-        if isinstance(body.motion, PoseFunction):
-            yield f"that {body.word} '{body.name}' is no faster than stated between two samples"
+    yield from functions_not_checked(plan.problem)
     if path.bent:
         yield "F on the lattice, from which the joints were moved to reach the goal's attitude"
     elif path.moved:
         yield "that the path on the lattice is free between its nodes: the refined one was checked"
     yield from shapes_not_checked(plan.problem.robot, bodies)
+
+
+def functions_not_checked(problem: Problem) -> Iterator[str]:
+    """What the verification takes as functions of bodies' motions state it.
+
+    Args:
+        problem: gives the bodies.
+    """
+    for body in problem.scene.bodies:
+        if isinstance(body.motion, PoseFunction):
+            yield f"that {body.word} '{body.name}' is no faster than stated between two samples"
 
 
 def shapes_not_checked(robot: SpaceRobot, bodies: Bodies) -> Iterator[str]:
@@ -277,8 +286,13 @@ def other_motion(swept: Swept) -> list[str]:
     return problems
 
 
-def _other_bodies(problem: Problem, swept: Swept) -> Iterator[str]:
-    """Bodies that move farther than the bounds on their travel say, which functions may do."""
+def other_bodies(problem: Problem, swept: Swept) -> Iterator[str]:
+    """Bodies that move farther than the bounds on their travel say, which functions may do.
+
+    Args:
+        problem: gives the bodies.
+        swept: what was found along a motion.
+    """
     still = len(problem.scene.at_rest)
     for k, excess in enumerate(swept.excess_ways):
         if excess > AGREEMENT:

@@ -40,7 +40,7 @@ def test_a_bound_that_is_too_small_is_noticed(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_clearances_on_random_edges_stay_within_their_bound(kind, ramp):
     rng = np.random.default_rng(3)
-    shares = [share for _ in range(6) for share in edge_shares(rng, kind, ramp)]
+    shares = [share for _ in range(6) for share in edge_shares(rng, kind, ramp, 5)]
     assert 0.2 < max(shares) <= 1.0
 
 

@@ -174,6 +174,7 @@ def test_a_page_says_what_was_found(robot, tmp_path):
     text = (tmp_path / "t.html").read_text()
     assert "rotation of the base" in text
     assert f"at {report.contact.time:.6f} s" in text
+    assert '"limits": [0.0]' not in text  # no clearance is proven of what collides
 
 
 WRONG = [
@@ -215,3 +216,36 @@ def test_continuous_joints_take_the_shorter_way():
     given = fp.Trajectory([0.0, 1.0], {"j": [3.1, -3.1]})
     (middle,) = robot.joint_values(fp.certify(robot, fp.Scene(), given).at([0.5]))
     assert abs(abs(middle[0]) - np.pi) < 1e-9
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-7])
+def test_what_is_undecided_before_a_contact_lies_within_the_tolerance_and_is_said(robot, tolerance):
+    joints = {name: [0.0, 0.0] for name in robot.joint_names} | {"left_1": [0.0, 1.4]}
+    given = fp.Trajectory([3.0, 5.0], joints)
+    report = fp.certify(robot, BESIDE, given, tolerance=tolerance)
+    until, time = report.proven_until, report.contact.time
+    assert 3.0 < until < time < 5.0
+    undecided = clearances(report, np.linspace(until, time - 1e-6, 50))
+    assert 0.0 < undecided.min() <= undecided.max() <= 3.0 * tolerance + 1e-7
+    assert clearances(report, np.linspace(3.0, until, 200)).min() > 0.0
+    assert ("undecided" in report.verdict()) == (tolerance == 1e-3)
+    assert f"proven free before {until - 5e-7:.6f} s" in report.verdict()
+
+
+def test_times_until_which_all_is_proven_free_are_those_of_the_case(robot):
+    joints = {name: [0.0, 0.0] for name in robot.joint_names}
+    given, touching = fp.Trajectory([3.0, 5.0], joints), fp.Scene([[0.0, 0.0, 0.0]], [0.2])
+    free, met = (fp.certify(robot, scene, given) for scene in (BESIDE, touching))
+    assert free.proven_until == 5.0
+    assert free.unproven_time is None
+    assert met.proven_until == met.contact.time == 3.0
+    assert "proven" not in met.verdict()
+    swing = fp.Trajectory([3.0, 5.0], {**joints, "left_1": [0.0, 1.4]})
+    aside = fp.Scene([[-1.1, 1.5, 0.0]], [0.1])
+    times = np.linspace(3.0, 5.0, 801)
+    gaps = clearances(fp.certify(robot, aside, swing), times)
+    grazed = fp.Scene(aside.centers, aside.radii + gaps.min() - 1e-5)
+    near = fp.certify(robot, grazed, swing, tolerance=1e-3)
+    assert near.contact is None
+    assert 3.0 < near.proven_until == near.unproven_time < times[gaps.argmin()]
+    assert clearances(near, [near.proven_until])[0] < 3e-3

@@ -5,6 +5,7 @@ import json
 import pytest
 from typer.testing import CliRunner
 
+import ffsr_plan as fp
 from ffsr_plan.cli.commands import app
 
 TABLE = "time,{}\n0,0,0,0,0,0,0\n2,80 ,0,0,0,0,0\n"
@@ -57,3 +58,17 @@ def test_bad_input_is_named(run, words, named):
     result = run(*words)
     assert result.exit_code == 2
     assert named in result.stderr
+
+
+def test_of_a_bag_one_topic_is_judged(run, robot, tmp_path):
+    pytest.importorskip("mcap_ros2.writer")
+    still = fp.Trajectory([0.0, 1.0], {name: [0.0, 0.0] for name in robot.joint_names})
+    fp.formats.write_mcap(tmp_path / "one.mcap", still)
+    given = ["one.mcap", "--urdf", "planar_dual_arm"]
+    assert run(*given, "--topic", "/joint_trajectory").exit_code == 0
+    other = run(*given, "--topic", "/nothing")
+    assert other.exit_code == 2
+    assert "/nothing" in other.output
+    table = run("arm.csv", "--urdf", "planar_dual_arm", "--topic", "/joints")
+    assert table.exit_code == 2
+    assert "no bag" in table.output

@@ -71,7 +71,7 @@ def test_a_gif_of_a_plan_past_bodies_moves_and_tells_the_time(plan, tmp_path):
 
 @pytest.fixture(scope="module")
 def flown(flight):
-    """A flight of a plan without bodies, past bodies that were put there afterwards."""
+    """A flight of a plan without bodies, past a body that was put there afterwards."""
     body = MovingBody([fp.Ball(0.3)], Drift((0.01, 0.0, 0.0)), (0.0, 3.0, 0.0), name="debris")
     problem = flight.problem
     problem = replace(problem, scene=fp.Scene(bodies=[body]), duration=flight.duration)
@@ -88,12 +88,15 @@ def test_clearances_of_a_flight_are_those_at_its_own_times(flown):
         assert found == pytest.approx(fp.clearance(flown.problem.robot, scene, q))
 
 
-def test_pictures_of_a_flight_show_bodies_and_say_what_is_not_proven(flown, tmp_path):
+def test_pictures_of_a_flight_show_bodies_and_its_slip(flown, tmp_path):
+    late = replace(flown.flight, problem=flown.problem)
+    flown = flown._replace(flight=late)
     data = data_of(flight_page(flown))
-    assert data["subtitle"].endswith("not proven past moving bodies")
+    assert data["subtitle"].endswith(f"free of bodies even {late.slip:.2g} s early or late")
+    assert np.isfinite(late.slip)
     assert [row["name"] for row in data["bodies"]] == ["debris"]
     figure = flight_figure(flown, silhouettes=5)
-    assert "not proven past moving bodies" in figure.get_suptitle()
+    assert "early or late" in figure.get_suptitle()
     texts = [t.get_text() for t in figure.axes[0].texts if t.get_color() == "#c2528b"]
     assert texts[0] == "debris\n0 s"
     assert "clearance\n[m]" in [ax.get_ylabel() for ax in figure.axes]

@@ -147,7 +147,7 @@ def test_a_meeting_warns_of_an_arrival_near_a_singularity(air_bearing):
 
     def check(second):
         motion = motion_through(air_bearing, begin, (0.8, second, 0.5))
-        arrival = Arrival(motion, fp.Meeting("hand", 10.0))
+        arrival = Arrival(motion, fp.Meeting("hand", 10.0), fp.Scene())
         arrival.check(arrival.state(motion.joint_values[-1]), limits)
 
     with pytest.warns(fp.NearDynamicSingularity, match="'hand'"):

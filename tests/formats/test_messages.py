@@ -57,6 +57,8 @@ def test_echoed_yaml_is_read(tmp_path):
     ("message", "field"),
     [
         ({}, "m.json"),
+        ([MESSAGE, MESSAGE], "m.json"),
+        ({"trajectory": [MESSAGE, MESSAGE]}, "m.json"),  # all of a plan, not its first part
         ([], "m.json"),
         ({**MESSAGE, "points": []}, "m.json"),
         ({**MESSAGE, "points": [POINT, {**LATER, "positions": [1.0]}]}, "points.1, positions"),
@@ -70,6 +72,43 @@ def test_what_is_wrong_in_a_message_is_named(tmp_path, message, field):
     with pytest.raises(fp.InvalidInput) as error:
         read(tmp_path, message)
     assert field in error.value.what
+
+
+def test_several_documents_are_no_message(tmp_path):
+    pytest.importorskip("yaml")
+    (tmp_path / "m.yaml").write_text(f"{json.dumps(MESSAGE)}\n---\n{json.dumps(MESSAGE)}\n---\n")
+    with pytest.raises(fp.InvalidInput, match="2 YAML documents"):
+        fm.read_trajectory(tmp_path / "m.yaml")
+
+
+def test_of_several_trajectories_in_a_bag_one_is_chosen(tmp_path):
+    pytest.importorskip("mcap_ros2.writer")
+    from mcap.reader import make_reader
+    from mcap.writer import Writer
+
+    firsts = []
+    with (tmp_path / "two.mcap").open("wb") as out:
+        bag = Writer(out)
+        bag.start()
+        for k, last in enumerate((0.5, 0.7)):
+            fm.write_mcap(tmp_path / "one.mcap", fp.Trajectory([0.0, 1.0], {"a": [0.0, last]}))
+            with (tmp_path / "one.mcap").open("rb") as file:
+                for schema, channel, message in make_reader(file).iter_messages():
+                    kind = bag.register_schema(schema.name, schema.encoding, schema.data)
+                    topic = bag.register_channel(f"/arm_{k}", channel.message_encoding, kind)
+                    bag.add_message(topic, k, message.data, k)
+                    firsts.append(last)
+        bag.finish()
+    with pytest.raises(fp.InvalidInput, match="2 on /arm_0, /arm_1"):
+        fm.read_trajectory(tmp_path / "two.mcap")
+    for k, last in enumerate(firsts):
+        for choice in ({"number": k}, {"topic": f"/arm_{k}"}):
+            assert fm.read_mcap(tmp_path / "two.mcap", **choice).joints["a"][1] == last
+    with pytest.raises(fp.InvalidInput, match="number 2 asked for"):
+        fm.read_mcap(tmp_path / "two.mcap", number=2)
+    for wrong in ({"number": -1}, {"topic": "/arm_2"}, {"topic": 2}):
+        with pytest.raises(fp.InvalidInput, match=next(iter(wrong))):
+            fm.read_mcap(tmp_path / "two.mcap", **wrong)
 
 
 def test_recorded_joint_states_are_rows(tmp_path):

@@ -41,6 +41,18 @@ def test_units_of_the_header_count(tmp_path):
     assert list(found.joints) == ["j 1", "slide"]
 
 
+def test_units_in_parentheses_count_and_remarks_before_units_do_not(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("time (ms),a (deg),b position (deg),c (hinge) [rad]\n0,0,0,0\n500,90,180,1\n")
+    found = fp.formats.read_csv(path)
+    assert found.times.tolist() == [0.0, 0.5]
+    last = [found.joints[name][1] for name in "abc"]
+    assert last == pytest.approx([np.pi / 2, np.pi, 1.0])
+    path.write_text("time,a (grad)\n0,0\n1,1\n")
+    with pytest.raises(fp.InvalidInput, match="unit of column 'a'"):
+        fp.formats.read_csv(path)
+
+
 def test_times_of_a_calendar_count_from_the_first(tmp_path):
     (tmp_path / "t.csv").write_text("t,a\n1700000000.5,0\n1700000001.0,1\n")
     assert fp.formats.read_csv(tmp_path / "t.csv").times.tolist() == [0.0, 0.5]

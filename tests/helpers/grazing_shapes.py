@@ -98,8 +98,13 @@ class Look:
 
     def least(self, scene, samples):
         """The least distance at some samples [m]."""
-        distances = SampledDistances(self._bodies, scene, self._start)
-        return float(np.min(distances.clearances(samples)))
+        distances, count = SampledDistances(self._bodies, scene, self._start), len(samples.turns)
+        still = np.zeros((count, distances.outer))  # one stretch is enough for one obstacle
+        whole = np.zeros(count, dtype=np.int64)
+        distances.stretches(whole, samples.instants, distances.middles(samples), still)
+        which = np.repeat(np.arange(count), distances.outer)
+        part, whole_way = np.tile(np.arange(distances.outer), count), np.zeros(len(which), np.int64)
+        return float(np.min(distances.at(samples, which, part, whole_way, np.zeros(len(which)))))
 
 
 def grazing(rng, kind, look):
@@ -108,7 +113,7 @@ def grazing(rng, kind, look):
     way = rng.normal(size=3)
     way /= np.linalg.norm(way)
     made = placed_zone(rng, kind, way) if kind in ZONES else placed_shape(rng, kind, way)
-    for k in range(8):  # the least distance changes by at most as much as the obstacle moves
+    for k in range(7):  # the least distance changes by at most as much as the obstacle moves
         far -= look.least(made(far), look.few if k < 6 else look.all) - gap
     return made(far)
 

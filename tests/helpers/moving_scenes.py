@@ -123,13 +123,32 @@ def poses_by_hand(body, times):
 
 def clearances_by_hand(plan, times):
     """(n,) distances of the links to bodies of balls at even times."""
+    return _distances(plan.problem, placed(plan, share_run(plan.problem, times)), times)
+
+
+class _Places:
+    """The path of a flight by its times."""
+
+    def __init__(self, flight):
+        self.problem, self._flight = flight.problem, flight
+
+    def at(self, times):
+        return self._flight.at(times).configurations
+
+
+def flown_clearances_by_hand(flight, times, late=0.0):
+    """(n,) the same along the path of a flight that is late by so many seconds."""
+    links = placed(_Places(flight), np.clip(times - late, 0.0, flight.duration))
+    return _distances(flight.problem, links, times)
+
+
+def _distances(problem, links, times):
     found = np.full(len(times), np.inf)
-    links = placed(plan, share_run(plan.problem, times))
-    for body in plan.problem.scene.bodies:
+    for body in problem.scene.bodies:
         places, turns = poses_by_hand(body, times)
         for ball in body.shapes:
             centers = places + turns.apply(np.array(ball.position))
-            radius = ball.radius + plan.problem.min_clearance
+            radius = ball.radius + problem.min_clearance
             for solid, poses in links:
                 own = np.einsum("nji,nj->ni", poses[:, :3, :3], centers - poses[:, :3, 3])
                 found = np.minimum(found, _from_solid(solid, own) - radius)

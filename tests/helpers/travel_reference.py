@@ -49,6 +49,26 @@ class LinkBounds(NamedTuple):
     acceleration: Array
 
 
+class ReactionTerms(NamedTuple):
+    """What makes a base react, over each of K intervals; section 5 of docs/proof.md.
+
+    Attributes:
+        inertia: (K, 3, 3) locked inertia at the middle [kg m^2].
+        momentum: (K, 3) of the joints' motion at the middle [kg m^2].
+        inertia_change: (K,) bound on the norm of the inertia's derivative.
+        momentum_change: (K,) bound on the norm of the momentum's derivative.
+        least: (K,) lower bound on the inertia's eigenvalues.
+        energy: (K,) bound on twice the kinetic energy with the base at rest.
+    """
+
+    inertia: Array
+    momentum: Array
+    inertia_change: Array
+    momentum_change: Array
+    least: Array
+    energy: Array
+
+
 class LinkMotion(NamedTuple):
     """The motion of all links over each of K intervals, relative to the base.
 
@@ -250,12 +270,9 @@ class ReferenceBound:
         rotation = _BaseRotation(angular_velocity, speed, np.zeros_like(speed))
         return self._travels(links, rotation, attitudes, 0.0)
 
-    def _reaction(self, links: LinkMotion) -> _BaseRotation:
-        """The base's rotation at zero angular momentum.
-
-        I omega + l = 0, with the locked inertia I and the arms' angular momentum l relative to the
-        base, both about the centre of mass; their rates of change are bounded term by term.
-        """
+    def reaction_terms(self, links: LinkMotion) -> ReactionTerms:
+        """Locked inertia I and angular momentum l of the joints' motion, both about the centre of
+        mass, in base axes; their rates of change are bounded term by term."""
         masses, half = self._masses, links.half[:, 0]
         share = masses / np.sum(masses)
         centers, velocity, bodies = links.of_points(self._bodies, self._levers)
@@ -263,8 +280,6 @@ class ReferenceBound:
         link_rotations = links.poses.rotations
         inertias = link_rotations @ self._inertias @ np.swapaxes(link_rotations, -1, -2)
         inertia, momentum = _locked(masses, inertias, arms, velocity, links.velocities.angular)
-        rate = np.asarray(-np.linalg.solve(inertia, momentum[..., None])[..., 0], np.float64)
-
         spread, angular = self._largest_moments - self._least_moments, links.angular_speed
         pull = (1.0 - 2.0 * share) * bodies.speed + np.sum(share * bodies.speed, 1, keepdims=True)
         leverage = masses * (np.linalg.norm(arms, axis=-1) + links.half * pull)
@@ -278,11 +293,18 @@ class ReferenceBound:
         least = np.linalg.eigvalsh(inertia)[:, 0] - half * inertia_change
         least = np.maximum(least, np.sum(self._least_moments))
         energy = np.sum(masses * bodies.speed**2 + self._largest_moments * angular**2, axis=1)
+        return ReactionTerms(inertia, momentum, inertia_change, momentum_change, least, energy)
+
+    def _reaction(self, links: LinkMotion) -> _BaseRotation:
+        """The base's rotation at zero angular momentum: I omega + l = 0."""
+        half, terms = links.half[:, 0], self.reaction_terms(links)
+        momentum, least = terms.momentum, terms.least
+        rate = -np.linalg.solve(terms.inertia, momentum[..., None])[..., 0]
         now = np.linalg.norm(rate, axis=-1)
-        speed = np.minimum(
-            now + half * (momentum_change + inertia_change * now) / least, np.sqrt(energy / least)
-        )
-        return _BaseRotation(rate, speed, (momentum_change + inertia_change * speed) / least)
+        more = terms.momentum_change + terms.inertia_change * now
+        speed = np.minimum(now + half * more / least, np.sqrt(terms.energy / least))
+        change = (terms.momentum_change + terms.inertia_change * speed) / least
+        return _BaseRotation(rate, speed, change)
 
     def _travels(
         self,

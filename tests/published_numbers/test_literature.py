@@ -11,7 +11,7 @@ from ffsr_plan.cli import app
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics import momentum
 from ffsr_plan.dynamics.reaction import Reaction
-from ffsr_plan.published_numbers import literature, planar_manipulator
+from ffsr_plan.published_numbers import double_bridge, literature, planar_manipulator
 from ffsr_plan.published_numbers.air_bearing_robot import air_bearing_robot
 from ffsr_plan.published_numbers.dual_arm_satellite import BEGIN, CHANGE, dual_arm_satellite
 from ffsr_plan.published_numbers.ets_vii import ets_vii
@@ -38,6 +38,10 @@ def test_a_tolerance_is_no_wider_than_what_is_printed():
         scale = max(abs(each.expected), 1e-3)
         if each.basis == PUBLISHED and "about" not in each.differs:
             assert each.tolerance <= 0.02 * scale or each.expected == 0.006  # three digits
+        elif "trials" in each.differs:  # four standard deviations of a share
+            share = each.expected / 100.0
+            deviation = 100.0 * np.sqrt(share * (1.0 - share) / double_bridge.TRIALS)
+            assert each.tolerance == pytest.approx(4.0 * deviation)
         elif each.basis != PUBLISHED:
             assert each.tolerance <= 2e-3 * scale
 
@@ -119,3 +123,11 @@ def test_the_command_ends_with_status_1_if_a_number_is_off(run, monkeypatch):
     assert result.exit_code == 1
     assert "NO, published" in result.stdout
     assert run("--json").exit_code == 1
+
+
+def test_branches_of_one_length_are_taken_equally_often_and_more_ants_find_the_short_one():
+    assert double_bridge.share_by_chain(4, double_bridge._SHORT) == pytest.approx(0.5, abs=1e-3)
+    shares = [double_bridge.share_by_chain(ants) for ants in (1, 2, 4, 8)]
+    assert shares[0] == 0.5  # one ant is unanimous at once
+    assert np.all(np.diff(shares) < 0.0)
+    assert shares[3] < 0.05

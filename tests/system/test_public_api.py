@@ -10,6 +10,7 @@ import typing
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from typing_extensions import Self
 
 import ffsr_plan as fp
 
@@ -77,7 +78,8 @@ def own_types(annotation):
 def test_types_that_public_functions_return_are_public():
     named = {name: getattr(fp, name) for name in fp.__all__}
     public = set(named.values())
-    foreign = {"Axes": Axes, "Figure": Figure}  # which modules name for type checkers only
+    # what modules name for type checkers only
+    foreign = {"Axes": Axes, "Figure": Figure, "Self": Self, "Client": object}
     for name, function in public_methods():
         namespace = vars(inspect.getmodule(function)) | foreign | named
         hints = typing.get_type_hints(function, namespace)

@@ -76,6 +76,7 @@ def calls(plan, tmp_path_factory):
         fp.PostureAxis: {"joints": {"left_1": 1.0}, "half_count": 1, "spacing": 0.1},
         fp.PostureTarget: {"towards": "stowed", "levels": 2},
         fp.PostureAxis.towards: {"posture": "stowed", "levels": 2},
+        fp.Departure: vars(fp.Departure([0.0], [0.0])),
         fp.Meeting: vars(fp.Meeting("left_3", 100.0)),
         fp.AntSystem: vars(fp.AntSystem()),
         fp.LeastFuel: vars(fp.LeastFuel(spacing=0.1)),

@@ -260,3 +260,17 @@ def test_meetings_verify_and_missed_ones_do_not():
     turned = replace(meeting, attitude=np.add(angles, [0.0, 0.0, 1.0]))
     assert "attitude misses" in complaints(report_of(flight, meeting=turned))
     assert "does not rest at both" in complaints(report_of(flight, meeting=None))
+
+
+@pytest.mark.parametrize("options", [{}, REST], ids=["smooth", "rest"])
+def test_a_base_that_mirrored_arms_do_not_turn_verifies(options):
+    robot = fp.load_robot("planar_dual_arm")
+    mirrored = {"left_1": 0.3, "right_1": -0.3, "left_2": -0.5, "right_2": 0.5}
+    goal = robot.configuration((4.0, 0.0, 0.0), joints=mirrored)
+    fields = {"lattice": fp.Lattice(6, fp.Axis(2, 0.4)), "delta": 0.1}
+    problem = fp.Problem(robot, fp.Scene([[2.0, 1.9, 0.0]], [0.3]), robot.neutral(), goal, **fields)
+    flight = fp.plan(problem, fp.LatticeOptimum()).timed(**LIMITS, **options)
+    report = flight.verify()
+    assert report.ok, report.problems
+    turning = np.max(np.abs(flight.at([0.5 * flight.duration]).angular_velocity))
+    assert turning < 1e-9

@@ -12,7 +12,6 @@ from ffsr_plan.bodies.pose_function import PoseFunction
 from ffsr_plan.bodies.tumble import Tumble
 from ffsr_plan.cli.printed_tables import report_rows
 from ffsr_plan.core.errors import InvalidInput
-from ffsr_plan.verification.flights.verify_flight import verify_flight
 from tests.helpers.moving_scenes import (
     DURATION,
     KINDS,
@@ -206,22 +205,24 @@ def test_a_function_that_tells_no_pose_is_refused(straight):
         among(straight, body).verify()
 
 
-def test_what_has_another_pace_is_refused_past_bodies(straight, tmp_path):
-    limits = {"joint_acceleration": 1.0, "thruster_acceleration": 1.0}
-    for another in (
-        straight.smooth,
-        straight.least_fuel,
-        lambda: straight.timed(**limits),
-        lambda: straight.timed(corners="rest", **limits),
-    ):
-        with pytest.raises(InvalidInput, match=r"scene bodies: .*its own pace"):
-            another()
+def test_what_sees_no_times_is_refused_past_bodies(straight):
+    with pytest.raises(InvalidInput, match=r"scene bodies: .*sees no times"):
+        straight.least_fuel()
     with pytest.raises(InvalidInput, match="a scene at rest"):
         fp.plan(straight.problem, fp.LeastFuel())
-    flight = replace(straight, problem=replace(straight.problem, scene=fp.Scene())).timed(**limits)
-    smooth = replace(flight.smooth_plan, plan=straight)
-    with pytest.raises(InvalidInput, match="scene bodies"):
-        verify_flight(replace(flight, smooth_plan=smooth), 0.0)
+
+
+def test_a_flight_into_a_body_is_noticed(straight):
+    flight = straight.timed(joint_acceleration=1.0, thruster_acceleration=1.0, corners="rest")
+    at = 0.5 * flight.duration
+    place = flight.at([at]).configurations[0, :3]
+    velocity = np.array([0.0, 1.0, 0.0])
+    bullet = MovingBody([fp.Ball(0.1)], Drift(velocity), place - at * velocity)
+    hit = replace(flight, problem=replace(straight.problem, scene=fp.Scene(bodies=[bullet])))
+    (told,) = [each for each in hit.verify().problems if "on piece" in each and "inside" in each]
+    assert "moving body (bodies.0)" in told
+    assert abs(float(told.split(" at ")[1].split(" s")[0]) - at) < 1.5
+    assert flight.verify().ok
 
 
 @pytest.mark.parametrize("ramp", [0.0, 0.3])

@@ -104,6 +104,14 @@ class DebrisCloud:
         """
         return np.asarray(self.centers + number("time", time, at_least=0.0) * self.velocities)
 
+    def later(self, time: float) -> DebrisCloud:
+        """The same spheres from a later instant on.
+
+        Args:
+            time: [s], which becomes time zero.
+        """
+        return DebrisCloud(self.centers_at(time), self.radii, self.velocities, self.name)
+
     @property
     def speed(self) -> float:
         """Speed of the fastest sphere [m/s]."""

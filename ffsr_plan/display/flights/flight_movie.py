@@ -114,7 +114,7 @@ def _scene(
     pace = "true time" if speed == 1.0 else f"{speed:g} × true time"
     return MovingScene(
         problem=flown.problem,
-        title=f"{flown.heading()}, {pace}{flown.not_proven()}",
+        title=f"{flown.heading()}, {pace}",
         frames=samples.frames,
         axes=axes,
         robot=robot_outlines(samples.frames, axes, shapes),

@@ -31,6 +31,10 @@ class Flight(Protocol):
         """Velocity change that the thrusters produce in translation [m/s]."""
 
     @property
+    def slip(self) -> float:
+        """Time by which it may be early or late past bodies that move [s]."""
+
+    @property
     def rests(self) -> Array:
         """(k,) times of rests on the way [s]."""
 
@@ -63,17 +67,15 @@ class FlownProblem(NamedTuple):
         return f"{self.problem.robot.name}, {self.problem.mode}"
 
     def summary(self) -> str:
-        """Duration and delta-v; where bodies move, that nothing is proven past them."""
+        """Duration, delta-v and rests; where bodies move, by how much it may miss its times."""
         words = f"{self.flight.duration:.4g} s"
         if self.problem.mode.has_thrusters:
             words += f", Δv {self.flight.delta_v:.3g} m/s"
         rests = len(self.flight.rests)
         words += f", {rests} rests" if rests > 1 else ", 1 rest" if rests else ""
-        return words + self.not_proven()
-
-    def not_proven(self) -> str:
-        """What is to be said where bodies move, past which the flight's own pace is not proven."""
-        return ", not proven past moving bodies" if self.problem.scene.moves else ""
+        if self.problem.scene.moves:
+            words += f", free of bodies even {self.flight.slip:.2g} s early or late"
+        return words
 
 
 class FlightSamples(NamedTuple):

@@ -33,14 +33,14 @@ def extra(module: str) -> Any:  # noqa: ANN401 - a module without types
 
 
 def read_data(what: str, path: str | Path) -> Any:  # noqa: ANN401 - what JSON and YAML hold
-    """The value in a JSON or YAML file; of several YAML documents the first.
+    """The value in a JSON or YAML file; YAML documents without content are skipped.
 
     Args:
         what: name of the argument in errors.
         path: the file; it ends in .json, .yaml or .yml.
 
     Raises:
-        InvalidInput: a file that cannot be read, or that is no JSON or YAML.
+        InvalidInput: a file that cannot be read, that is no JSON or YAML, or has several documents.
     """
     target = checked_path(what, path, *SUFFIXES)
     text = read_text(what, target, "utf-8-sig")
@@ -49,7 +49,10 @@ def read_data(what: str, path: str | Path) -> Any:  # noqa: ANN401 - what JSON a
             return json.loads(text)
         yaml = extra("yaml")
         loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-        return next((each for each in yaml.load_all(text, loader) if each is not None), None)
+        found = [each for each in yaml.load_all(text, loader) if each is not None]
+        if len(found) > 1:  # such as several messages that were recorded one after the other
+            raise InvalidInput(f"{what} '{path}'", f"{len(found)} YAML documents", "one document")
+        return found[0] if found else None
     except InvalidInput:
         raise
     except (ValueError, RecursionError) as error:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.dynamics.inverse_dynamics import States
+from ffsr_plan.meetings.departure import Departure
 from ffsr_plan.meetings.meeting import Meeting
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.trajectory.flight_limits import FlightLimits
@@ -55,6 +56,10 @@ class Flown(Protocol):
     @property
     def meeting(self) -> Meeting | None:
         """What it arrives with, and when; None for a rest."""
+
+    @property
+    def departure(self) -> Departure | None:
+        """The state that it begins in; None for a rest."""
 
     def at(self, times: ArrayLike) -> States:
         """States at times (N,) [s], without pulses."""

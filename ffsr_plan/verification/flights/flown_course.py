@@ -6,6 +6,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array, IntArray
 from ffsr_plan.verification.flights.flown import Flown
+from ffsr_plan.verification.flights.met_target import may_touch
 from ffsr_plan.verification.flights.used_limits import UsedLimits
 from ffsr_plan.verification.motion_samples import Samples, samples_of
 from ffsr_plan.verification.moving_bodies.scene_bodies import SceneBodies
@@ -39,7 +40,9 @@ class FlownCourse:
         still = np.zeros(self.edges)
         self.base_speeds: Array = still if mode.floats else used.base_speeds * lengths
         self.held_turns = None if mode.attitude_reacts else used.turn_speeds * lengths
-        self.moving = SceneBodies((), np.zeros(3), flight.duration)
+        moving = self.problem.scene.bodies
+        self.moving = SceneBodies(moving, self.problem.start[:3], flight.duration)
+        self.touching = may_touch(flight)
 
     def at(self, edge: IntArray, time: Array) -> Samples:
         """Configurations at times (N,) from 0 to 1 on pieces (N,)."""

@@ -27,6 +27,7 @@ _KINK = 1e-8  # of the largest velocity: error of a step from which on it is hal
 _HALVINGS = 14
 _MOST_STEPS = 8  # times as many as without halving
 _LEAST = 1e-12  # peaks below count as this much
+_STILL = 1e-8  # share of the joints' rates; a base that turns more slowly turns by rounding alone
 
 
 _NO_MOMENTUM = MomentumMap(np.zeros((0, 3, 0)), np.zeros(0), np.zeros((0, 3)))
@@ -162,7 +163,8 @@ def motion_errors(flight: Flown, steps: Steps) -> MotionErrors:
         position=position,
         joints=joints,
         velocities=max(
-            _velocity_error(flight, steps), _relative(spins - inner.angular_velocity, spins)
+            _velocity_error(flight, steps),
+            _relative(spins - inner.angular_velocity, spins, _least_turn(inner)),
         ),
         delta_v=_delta_v_error(flight, steps),
     )
@@ -182,7 +184,11 @@ def _velocity_error(flight: Flown, steps: Steps) -> float:
     first, last = steps.first, steps.last
     summed = np.cumsum(steps.missed(), axis=0)
     parts = np.split(np.arange(summed.shape[1]), [3, 6])
-    errors = [_relative(summed[:, part], steps.inner.velocities[:, part]) for part in parts]
+    leasts = _LEAST, _least_turn(steps.inner), _LEAST
+    errors = [
+        _relative(summed[:, part], steps.inner.velocities[:, part], least)
+        for part, least in zip(parts, leasts, strict=True)
+    ]
     jumps = first.base_velocity[1:] - last.base_velocity[:-1]
     begins = steps.nodes[1:, 0]
     ahead = np.searchsorted(flight.pulse_times, begins)
@@ -239,7 +245,12 @@ def _gathered(apart: Array) -> float:
     return float(np.max(np.abs(np.cumsum(apart, axis=0)), initial=0.0))
 
 
-def _relative(errors: Array, values: Array) -> float:
-    """Largest error, relative to the largest value."""
-    peak = max(float(np.max(np.abs(values), initial=0.0)), _LEAST)
+def _least_turn(states: States) -> float:
+    """Angular velocity of the base that counts as none [rad/s]."""
+    return max(_LEAST, _STILL * float(np.max(np.abs(states.joint_velocities), initial=0.0)))
+
+
+def _relative(errors: Array, values: Array, least: float = _LEAST) -> float:
+    """Largest error, relative to the largest value; values below `least` count as this much."""
+    peak = max(float(np.max(np.abs(values), initial=0.0)), least)
     return float(np.max(np.abs(errors), initial=0.0)) / peak

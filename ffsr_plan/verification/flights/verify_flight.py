@@ -20,17 +20,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.verification.flights.flight_ends import flight_ends
 from ffsr_plan.verification.flights.flown import Flown
 from ffsr_plan.verification.flights.flown_course import FlownCourse
 from ffsr_plan.verification.flights.force_balance import ForceErrors, force_errors
 from ffsr_plan.verification.flights.motion_integrals import MotionErrors, motion_errors, steps_of
 from ffsr_plan.verification.flights.used_limits import PER_PIECE, UsedLimits, used_limits
+from ffsr_plan.verification.motion_samples import MayTouch
 from ffsr_plan.verification.recomputed_objective import AGREEMENT
 from ffsr_plan.verification.sweep import CONFIRMED, Swept, sweep
 from ffsr_plan.verification.urdf_reading import Bodies
-from ffsr_plan.verification.verify import collisions, other_motion, shapes_not_checked
+from ffsr_plan.verification.verify import (
+    collisions,
+    functions_not_checked,
+    other_bodies,
+    other_motion,
+    shapes_not_checked,
+)
 
 MOTION_LIMIT = 1e-5
 """Allowed difference of base and joints from their integrals [rad] and [m]."""
@@ -102,11 +108,9 @@ def verify_flight(flight: Flown, clearance: float) -> FlightReport:
         The measured values, the problems found, and what was not checked.
 
     Raises:
-        InvalidInput: bodies of the scene move; flights past them are not made.
+        InvalidInput: a function of a body's motion tells no pose.
+        IntegrationError: a tumble of a body that cannot be integrated accurately.
     """
-    if flight.problem.scene.moves:
-        allowed = "a scene at rest for a flight; a plan past bodies that move verifies by itself"
-        raise InvalidInput("scene bodies", list(flight.problem.scene.moving), allowed)
     robot = flight.problem.robot
     bodies = Bodies(robot.urdf, robot.srdf, robot.replacements)
     used = used_limits(flight)
@@ -119,8 +123,9 @@ def verify_flight(flight: Flown, clearance: float) -> FlightReport:
         *_exceeded(used),
         *flight_ends(flight, steps.inner.velocities, RELATIVE_LIMIT),
         *_pulses(flight, swept),
-        *collisions(clearance, swept, "flight", "piece"),
+        *collisions(clearance, swept, "flight", "piece", timed=flight.problem.scene.moves),
         *other_motion(swept),
+        *other_bodies(flight.problem, swept),
     )
     figures = (*motion, *forces)
     if not swept.finite or not np.all(np.isfinite(figures)):
@@ -128,7 +133,7 @@ def verify_flight(flight: Flown, clearance: float) -> FlightReport:
     return FlightReport(
         not problems,
         problems,
-        tuple(_not_checked(flight, bodies)),
+        tuple(_not_checked(flight, bodies, course.touching)),
         *figures[:4],
         *forces,
         motion.delta_v,
@@ -185,11 +190,19 @@ def _pulses(flight: Flown, swept: Swept) -> Iterator[str]:
         yield "pulses do not add up to the changes of velocity that they stand for"
 
 
-def _not_checked(flight: Flown, bodies: Bodies) -> Iterator[str]:
+def _not_checked(flight: Flown, bodies: Bodies, touching: MayTouch | None) -> Iterator[str]:
     yield "that no flight within the limits is shorter, or calmer in the same time"
     yield f"limits, and rates that bound the travel, between {PER_PIECE} instants of each piece"
     if flight.problem.scene.excess > 0.0:
         yield "that the spheres cover what they stand for, and by how much they exceed it"
+    if touching is not None:
+        target, links = flight.departure or flight.meeting, ", ".join(touching.links)
+        which = f"{links} to moving body '{target and target.target}', which they may touch"
+        when = f"last {flight.duration - touching.since:.3g} s"
+        if flight.departure is not None:
+            when = f"first {min(touching.until, flight.duration):.3g} s"
+        yield f"distances of {which}, in the {when}"
+    yield from functions_not_checked(flight.problem)
     yield from shapes_not_checked(flight.problem.robot, bodies)
 
 

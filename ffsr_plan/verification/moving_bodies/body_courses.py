@@ -33,6 +33,9 @@ class BodyCourse(Protocol):
     def poses(self, times: Array) -> tuple[Array, Array]:
         """Positions (N, 3) of the reference point [m] and rotations (N, 3, 3), in the world."""
 
+    def twist(self, time: float) -> tuple[Array, Array]:
+        """Velocity (3,) of the reference point [m/s], angular velocity (3,) [rad/s], world axes."""
+
     def paths(self, begins: Array, ends: Array) -> Array:
         """(N,) bounds on the path of the reference point in intervals of time [m]."""
 
@@ -76,6 +79,9 @@ class _Uniform:
         places = self._begin + times[:, None] * self._velocity
         return places, self._turn @ turns_by(times[:, None] * self._rate)
 
+    def twist(self, time: float) -> tuple[Array, Array]:
+        return self._velocity, self._turn @ self._rate
+
     def paths(self, begins: Array, ends: Array) -> Array:
         return np.asarray(float(np.linalg.norm(self._velocity)) * (ends - begins))
 
@@ -94,6 +100,10 @@ class _Tumbling(_Uniform):
     def poses(self, times: Array) -> tuple[Array, Array]:
         places, _ = super().poses(times)
         return places, self._turn @ self._rotation.states(times)[1]
+
+    def twist(self, time: float) -> tuple[Array, Array]:
+        rates, turns = self._rotation.states(np.array([time]))
+        return self._velocity, self._turn @ turns[0] @ rates[0]
 
     def angles(self, begins: Array, ends: Array) -> Array:
         return self._rotation.angles(begins, ends)
@@ -131,6 +141,12 @@ class _Tabulated:
         turned = turns_by(share[:, None] * self._vectors[row])
         return np.stack(places, axis=1), self._turns[row] @ turned
 
+    def twist(self, time: float) -> tuple[Array, Array]:
+        row = int(np.clip(np.searchsorted(self._times, time) - 1, 0, len(self._turns) - 1))
+        span = self._times[row + 1] - self._times[row]
+        way = self._places[row + 1] - self._places[row]
+        return way / span, self._turns[row] @ self._vectors[row] / span
+
     def paths(self, begins: Array, ends: Array) -> Array:
         return self._run(self._ways, begins, ends)
 
@@ -159,6 +175,9 @@ class _Told:
             places[k] = finite_array(f"{what}, position", place, (3,))
             quaternions[k] = unit_quaternion(f"{what}, attitude", attitude)
         return places, turns_of(quaternions)
+
+    def twist(self, time: float) -> tuple[Array, Array]:
+        raise TypeError("a function tells no velocity, and is not met")
 
     def paths(self, begins: Array, ends: Array) -> Array:
         return np.asarray(self._motion.speed * (ends - begins))

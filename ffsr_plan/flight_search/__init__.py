@@ -1,0 +1,1 @@
+"""Flights past bodies that move, tried until one is proven."""

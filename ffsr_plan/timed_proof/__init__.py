@@ -1,0 +1,1 @@
+"""Proofs at the times of a flight, past bodies that move."""
