@@ -1,11 +1,13 @@
 """The best plans known: judged again, and not below the bounds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import ffsr_plan as fp
 from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
-from ffsr_plan.problem_set.making.best_known import bound_of
+from ffsr_plan.problem_set.making.best_known import adopted, bound_of
 from ffsr_plan.problem_set.making.generation import FAMILIES
 
 
@@ -70,6 +72,20 @@ def test_a_better_plan_replaces_the_file_and_its_digest(problems, best, tmp_path
     (tmp_path / "best" / f"{name}.npz").write_bytes(b"changed")
     with pytest.raises(fp.InvalidInput, match="unchanged"):
         own.trajectory(name)
+
+
+def test_what_is_better_in_results_of_others_is_kept(problems, best, submitted, tmp_path):
+    name = "paper/03"
+    folder, own = submitted({name: best.trajectory(name)}), BestPlans(tmp_path / "own")
+    own.folder.mkdir()
+    row = best.get(name)
+    own.put(replace(row, objective=row.objective - 1.0), best.trajectory(name))
+    assert adopted(folder, problems, own) == []
+    own.put(replace(row, objective=row.objective + 1.0), best.trajectory(name))
+    assert adopted(folder, problems, own) == [name]
+    assert own.get(name).objective == pytest.approx(row.objective, rel=1e-9)
+    assert own.get(name).planner == "theirs"
+    assert own.get(name).bound == row.bound
 
 
 def test_a_problem_without_a_plan_has_no_gap():

@@ -17,6 +17,7 @@ import numpy as np
 
 from ffsr_plan.core.errors import FfsrPlanError, GoalPoseIgnored
 from ffsr_plan.formats.plan_trajectories import trajectory_of
+from ffsr_plan.formats.trajectory_files import read_trajectory
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.planning.plan_and_refine import plan
 from ffsr_plan.problem.free_objective import STATIONS
@@ -25,6 +26,7 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.problem_set.bench_problem import BenchProblem
 from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
 from ffsr_plan.problem_set.judging.judgement import judge
+from ffsr_plan.problem_set.judging.result_files import read_results
 from ffsr_plan.problem_set.set_index import DATA, ProblemSet
 from ffsr_plan.studies.tasks.row import package_version
 
@@ -137,6 +139,47 @@ def _lattice_optimum(made: Plan) -> float | None:
     return float(made.optimum) if exact else None
 
 
+def adopted(folder: Path, problems: ProblemSet, known: BestPlans) -> list[str]:
+    """Keep what is better in a folder of results, judged once more.
+
+    Args:
+        folder: with `results.json`.
+        problems: the set.
+        known: the best plans; what is better is put there.
+
+    Returns:
+        Names of the problems with a better plan.
+
+    Raises:
+        InvalidInput: see `read_results`.
+    """
+    results, better = read_results(folder), []
+    for result in results.rows:
+        if result.trajectory is None:
+            continue
+        given = problems[result.problem]
+        old = known.get(given.name) or BestPlan(given.name, *bound_of(given.problem))
+        trajectory = read_trajectory(folder / result.trajectory)
+        verdict = judge(given, trajectory)
+        if verdict.objective is None or verdict.objective >= (old.objective or np.inf):
+            continue
+        row = replace(
+            old,
+            length=verdict.length,
+            objective=verdict.objective,
+            delta_v=verdict.delta_v,
+            clearance=verdict.clearance,
+            planner=results.planner,
+            seed=result.seed,
+            seconds=round(result.seconds, 3),
+            version=package_version(),
+            lattice_objective=None,
+        )
+        known.put(row, trajectory)
+        better.append(given.name)
+    return better
+
+
 def main() -> None:
     """Run the command."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -147,10 +190,14 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=1)
     parser.add_argument("--missing", action="store_true", help="only problems without a plan")
     parser.add_argument("--bounds", action="store_true", help="only work out the bounds again")
+    parser.add_argument("--results", type=Path, help="only keep what is better in this folder")
     parser.add_argument("--data", type=Path, default=DATA)
     given = parser.parse_args()
     warnings.simplefilter("ignore", GoalPoseIgnored)
     problems, known = ProblemSet(given.data), BestPlans(given.data)
+    if given.results is not None:
+        print("better:", ", ".join(adopted(given.results, problems, known)) or "none")
+        return
     if given.bounds:
         with_bounds(problems, known)
         return
