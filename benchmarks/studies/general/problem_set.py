@@ -42,7 +42,8 @@ def report(problems, judged, options):
         f"cores that other work used too. A plan is known of {len(known)} problems.",
         markdown(family_table(ours, problems, best)),
         "*Refused* are trajectories that the judge does not accept, *no path* tasks that ended "
-        "without one. Times include what other work took of the machine.",
+        "without one. Times include what other work took of the machine. The best plans known "
+        "include those of this run, so that F is compared with more runs of the same planner.",
     ]
     for each in others:
         parts += [

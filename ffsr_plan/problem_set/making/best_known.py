@@ -20,6 +20,7 @@ from ffsr_plan.formats.plan_trajectories import trajectory_of
 from ffsr_plan.formats.trajectory_files import read_trajectory
 from ffsr_plan.planning.certified_plan import Plan
 from ffsr_plan.planning.plan_and_refine import plan
+from ffsr_plan.plans.planner_registry import default_planner
 from ffsr_plan.problem.free_objective import STATIONS
 from ffsr_plan.problem.objective import motion_objective
 from ffsr_plan.problem.problem import Problem
@@ -163,13 +164,14 @@ def adopted(folder: Path, problems: ProblemSet, known: BestPlans) -> list[str]:
         verdict = judge(given, trajectory)
         if verdict.objective is None or verdict.objective >= (old.objective or np.inf):
             continue
+        own = default_planner(given.problem.lattice).name
         row = replace(
             old,
             length=verdict.length,
             objective=verdict.objective,
             delta_v=verdict.delta_v,
             clearance=verdict.clearance,
-            planner=results.planner,
+            planner=own if results.planner == "default" else results.planner,
             seed=result.seed,
             seconds=round(result.seconds, 3),
             version=package_version(),
