@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -30,6 +30,9 @@ from ffsr_plan.search.records import OnCycle, SearchRequest, Solution
 from ffsr_plan.time_limit.deadline import Deadline
 from ffsr_plan.tree_search.tree_planner import TreePlanner
 
+if TYPE_CHECKING:
+    from distributed import Client
+
 _NOTABLE = 1e-4  # [rad] or [m]
 _HOW_TO_REACH_IT = (
     "attitude-held holds both; reach_attitude the attitude, where the lattice has posture axes or "
@@ -46,6 +49,7 @@ def plan(
     refine: bool | None = None,
     colonies: int = 1,
     workers: int = 1,
+    scheduler: str | Client | None = None,
     time_limit: float | None = None,
     until: Literal["end", "first"] = "end",
     on_cycle: OnCycle | None = None,
@@ -64,10 +68,10 @@ def plan(
             `Portfolio()` runs the trees and the lattice's planner and takes the better path.
         seed: a whole number >= 0, or a generator. The same seed gives the same plan, bit for bit,
             whatever the number of workers.
-        refine: whether to move the path off the lattice in the end, see `refine`; by default on
-            every lattice without posture axes, as with them paths are not refined.
+        refine: whether to move the path off the lattice; by default without posture axes.
         colonies: independent colonies; the best path of all is returned.
         workers: processes that the colonies are spread over.
+        scheduler: of Dask workers instead, such as `tcp://10.0.0.1:8786`, or a client of it.
         time_limit: [s] from call to return, but for compiling; few calls are 5 % + 20 ms late.
         until: `first` returns the first path that `TreePlanner` proves free.
         on_cycle: called with a `Cycle` after each cycle, for a single colony; by trees, with a
@@ -89,8 +93,7 @@ def plan(
     chosen, problem = _planner_for(problem, planner)
     rng, seed_number = _generator(seed)
     request = _request(chosen, refine, colonies, workers, until, on_cycle)
-    request = request._replace(deadline=deadline)
-    check_colonies(problem, request.colonies)
+    request = _spread(problem, request, scheduler)._replace(deadline=deadline)
     certified = partial(_certified, problem, chosen, seed_number, watch)
     interruption = Interruption(one_of("on_interrupt", on_interrupt, (RETURN, RAISE)))
     with _best_certified(certified), interruption:
@@ -183,6 +186,18 @@ def _request(
         on_cycle=on_cycle,
         first=first,
     )
+
+
+def _spread(problem: Problem, request: SearchRequest, scheduler: object) -> SearchRequest:
+    """The request, after a check of its colonies and of what they are spread over."""
+    if scheduler is not None and request.colonies == 1:
+        raise InvalidInput(
+            "scheduler", scheduler, "None with one colony, which runs in one process"
+        )
+    if scheduler is not None and request.workers > 1:
+        raise InvalidInput("workers", request.workers, "1 with a scheduler, which has its own")
+    check_colonies(problem, request.colonies)
+    return request._replace(scheduler=scheduler)
 
 
 def _deadline(time_limit: float | None) -> Deadline:

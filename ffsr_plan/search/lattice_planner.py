@@ -17,7 +17,7 @@ from ffsr_plan.problem.problem import Problem
 from ffsr_plan.refinement.refined_path import refined_path
 from ffsr_plan.search.progress_solution import solve_with_progress
 from ffsr_plan.search.records import SearchMonitor, SearchRequest, SearchResult, Solution
-from ffsr_plan.search.workers import in_process, run_on_workers
+from ffsr_plan.search.workers import in_process, run_apart
 
 
 class LatticePlanner(ABC):
@@ -134,7 +134,7 @@ class LatticePlanner(ABC):
         if in_process(request):
             outcomes = _run_colonies(roadmap, self, rngs, request.monitor())
         else:
-            outcomes = run_on_workers(_colonies_of_worker, (roadmap.problem, self), rngs, request)
+            outcomes = run_apart(_colonies_of_worker, (roadmap.problem, self), rngs, request)
         result = _best(roadmap, outcomes, request.colonies)
         return result, Counts(
             edges_free=sum(o.edges_free for o in outcomes),

@@ -202,6 +202,7 @@ class SearchRequest(NamedTuple):
             possible.
         colonies: number of independent colonies.
         workers: number of processes that they are spread over.
+        scheduler: of a Dask cluster whose workers they are spread over instead, or a client of it.
         on_cycle: called after each cycle of a single colony, or None.
         deadline: when all has to end, by the time limit or Ctrl-C; None for never.
         begin: called when the search begins, after the lattice has been set up.
@@ -213,6 +214,7 @@ class SearchRequest(NamedTuple):
     refine: bool | None = None
     colonies: int = 1
     workers: int = 1
+    scheduler: object = None
     on_cycle: OnCycle | None = None
     deadline: Deadline | None = None
     begin: Callable[[], object] = bool

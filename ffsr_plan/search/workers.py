@@ -21,6 +21,7 @@ import numpy as np
 from ffsr_plan.core.errors import WorkerDied
 from ffsr_plan.core.kernels import announcement
 from ffsr_plan.core.kernels.compiling_time import Stopwatch, add_compiled
+from ffsr_plan.search.cluster_colonies import run_on_cluster
 from ffsr_plan.search.records import SearchMonitor, SearchRequest
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -43,8 +44,33 @@ _stopped, _next_poll = False, 0.0  # in a worker: the event when last looked at,
 
 def in_process(request: SearchRequest) -> bool:
     """Whether colonies run in this process: with one worker, or too little time to start more."""
+    if request.scheduler is not None:
+        return False
     deadline = request.deadline or Deadline()
     return request.workers == 1 or deadline.remaining() < _STARTING
+
+
+def run_apart(
+    run: Run[Job, Outcome],
+    job: Job,
+    rngs: list[np.random.Generator],
+    request: SearchRequest,
+) -> list[Outcome]:
+    """One outcome for each generator, from processes of this computer or from a cluster.
+
+    Args:
+        run: see `run_on_workers`.
+        job: see `run_on_workers`.
+        rngs: one a colony.
+        request: number of processes or scheduler of the cluster, and the deadline.
+
+    Raises:
+        InvalidInput: no scheduler answers.
+        OutOfTime: nothing came back by the deadline.
+        WorkerDied: with the worker's number and its colonies.
+    """
+    spread = run_on_workers if request.scheduler is None else run_on_cluster
+    return spread(run, job, rngs, request)
 
 
 def run_on_workers(

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from ffsr_plan.clusters.cluster_client import connected
 from ffsr_plan.core.checks import one_of, truth, whole_number
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.errors import InvalidInput
@@ -212,7 +213,7 @@ def _engine(
         from ffsr_plan.studies.engines import dask_cluster
 
         own = 0 if scheduler is not None else workers
-        there = dask_cluster.local(own) if own else dask_cluster.connected(scheduler)
+        there = dask_cluster.local(own) if own else connected(scheduler)
         with there as client, _closed(dask_cluster.DaskCluster(grid, client, own)) as engine:
             yield engine
     elif chosen == "processes":

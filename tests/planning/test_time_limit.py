@@ -183,7 +183,7 @@ def test_with_little_time_no_process_is_started(problem, monkeypatch):
     def never(*_):
         raise AssertionError
 
-    monkeypatch.setattr(lattice_planner, "run_on_workers", never)
+    monkeypatch.setattr(lattice_planner, "run_apart", never)
     plan = fp.plan(problem, MAX_MIN, 0, colonies=2, workers=2, time_limit=2.9)
     assert plan.interrupted or plan == fp.plan(problem, MAX_MIN, 0, colonies=2)
     assert not workers.in_process(SearchRequest(workers=2))

@@ -31,7 +31,7 @@ from ffsr_plan.search.postures.path_proof import (
 from ffsr_plan.search.postures.posture_lattice import PostureLattice
 from ffsr_plan.search.postures.posture_lattice_arrays import posture_grid
 from ffsr_plan.search.records import History, SearchMonitor, SearchRequest, Solution
-from ffsr_plan.search.workers import in_process, run_on_workers
+from ffsr_plan.search.workers import in_process, run_apart
 from ffsr_plan.time_limit.deadline import Deadline
 
 _PROOF_ATTEMPTS = 25
@@ -128,7 +128,7 @@ class PostureAnnealing(AnnealingSettings):
         if in_process(request):
             outcomes = _run_colonies(job, rngs, request.monitor())
         else:
-            outcomes = run_on_workers(_run_colonies, job, rngs, request)
+            outcomes = run_apart(_run_colonies, job, rngs, request)
         solutions = [outcome for outcome in outcomes if isinstance(outcome, Solution)]
         if not solutions:
             errors = [outcome for outcome in outcomes if isinstance(outcome, FfsrPlanError)]

@@ -25,7 +25,6 @@ from ffsr_plan.studies.tasks.row import Outcome
 if TYPE_CHECKING:
     from distributed import Client, Future, WorkerPlugin
 
-_CONNECTING = "30s"
 _COUNTING = 5.0  # [s] between two questions how many workers there are
 _LOOKS_AFTER_LOSS = 20  # questions at every occasion, after a worker was lost
 _LOST = "a Dask scheduler that goes on answering; the study goes on from here when it is run again"
@@ -37,7 +36,7 @@ class DaskCluster:
     in_this_process = False
 
     def __init__(self, grid: Grid, client: Client, workers: int = 0) -> None:
-        """Send the study to a cluster. `connected` and `local` make clients.
+        """Send the study to a cluster. `cluster_client.connected` and `local` make clients.
 
         Args:
             grid: the study.
@@ -168,31 +167,6 @@ def _run_on_worker(name: str, job: Job) -> tuple[Outcome, ...]:
 
 
 @contextmanager
-def connected(scheduler: object) -> Iterator[Client]:
-    """A client of a cluster that is there already.
-
-    Args:
-        scheduler: its address, such as `tcp://10.0.0.1:8786`, or a client, which stays open.
-
-    Raises:
-        InvalidInput: no scheduler answers there, or Dask is not installed.
-    """
-    client_class = _client_class()
-    if isinstance(scheduler, client_class):
-        yield scheduler
-        return
-    if not isinstance(scheduler, str) or "://" not in scheduler:
-        raise InvalidInput("scheduler", scheduler, "an address such as tcp://10.0.0.1:8786")
-    try:
-        client = client_class(scheduler, timeout=_CONNECTING, set_as_default=False)
-    except Exception as error:  # of many types, by what is wrong with the address
-        allowed = f"the address of a Dask scheduler that answers ({error})"
-        raise InvalidInput("scheduler", scheduler, allowed) from None
-    with client:
-        yield client
-
-
-@contextmanager
 def local(workers: int) -> Iterator[Client]:
     """A client of a new cluster of processes on this computer, which ends after the body.
 
@@ -221,15 +195,6 @@ def local(workers: int) -> Iterator[Client]:
             )
         with cluster, Client(cluster, set_as_default=False) as client:
             yield client
-
-
-def _client_class() -> type[Client]:
-    try:
-        from distributed import Client
-    except ImportError:
-        allowed = "the extra 'cluster' installed: pip install 'ffsr-plan[cluster]'"
-        raise InvalidInput("scheduler", "Dask, which is not installed", allowed) from None
-    return Client
 
 
 @contextmanager
