@@ -80,6 +80,9 @@ if TYPE_CHECKING:
     from ffsr_plan.problem.lattice_settings import Axis, Lattice, Progress
     from ffsr_plan.problem.posture_axes import PostureAxis, PostureTarget
     from ffsr_plan.problem.problem import Problem
+    from ffsr_plan.problem_set.bench_problem import BenchProblem
+    from ffsr_plan.problem_set.judging.judgement import Judgement, judge
+    from ffsr_plan.problem_set.set_index import ProblemSet
     from ffsr_plan.proof.interval_halving import Verdict
     from ffsr_plan.proof.single_edge_proof import EdgeProof, certify_edge
     from ffsr_plan.published_numbers.literature import literature
@@ -131,6 +134,7 @@ __all__ = [
     "Axis",
     "Balanced",
     "Ball",
+    "BenchProblem",
     "Box",
     "Branches",
     "Bus",
@@ -162,6 +166,7 @@ __all__ = [
     "InternalError",
     "InvalidInput",
     "JointBeyond",
+    "Judgement",
     "Lattice",
     "LatticeOptimum",
     "LayeredLattice",
@@ -191,6 +196,7 @@ __all__ = [
     "PostureAxis",
     "PostureTarget",
     "Problem",
+    "ProblemSet",
     "Progress",
     "RateLimits",
     "RecomputedNumber",
@@ -241,6 +247,7 @@ __all__ = [
     "formats",
     "generators",
     "inverse_kinematics",
+    "judge",
     "least_singular_value",
     "literature",
     "load_robot",
@@ -318,6 +325,9 @@ _NAMES = {  # by module; each is loaded when one of its names is first used
     "problem.lattice_settings": ("Axis", "Lattice", "Progress"),
     "problem.posture_axes": ("PostureAxis", "PostureTarget"),
     "problem.problem": ("Problem",),
+    "problem_set.bench_problem": ("BenchProblem",),
+    "problem_set.judging.judgement": ("Judgement", "judge"),
+    "problem_set.set_index": ("ProblemSet",),
     "proof.interval_halving": ("Verdict",),
     "proof.single_edge_proof": ("EdgeProof", "certify_edge"),
     "published_numbers.literature": ("literature",),

@@ -61,6 +61,7 @@ def calls(plan, tmp_path_factory):
 
     (folder / "study.toml").write_text("[scenario]\nfile = 'fig2a'\n")
     small = small_problem()
+    problems = fp.ProblemSet()
     study = fp.Study({"p": small}, "lattice-optimum")
     result = study.run(folder / "study")
 
@@ -170,6 +171,12 @@ def calls(plan, tmp_path_factory):
         fp.formats.write_moveit_scene: {"path": folder / "s.scene", "scene": scene},
         fp.formats.write_primitives: {"path": folder / "s.json", "scene": scene},
         fp.formats.read_primitives: {"path": folder / "s.json", "problem": 0},
+        fp.ProblemSet: {"folder": None},
+        problems.names: {"family": "traps"},
+        problems.entry: {"name": "traps/00"},
+        problems.best.get: {"name": "traps/00"},
+        problems.best.trajectory: {"name": "traps/00"},
+        fp.judge: {"given": problems["paper/00"], "trajectory": motion},
         fp.Study: {"problems": {"p": small}, "planners": None, "seeds": 1, "title": "t",
                    "axes": None, "refine": None, "time_limit": None, "memory_limit": None,
                    "plans": True},
@@ -276,7 +283,7 @@ def test_the_interface_is_covered(calls):
         "SmoothCurve", "SmoothFlight", "SmoothPlan", "Solution", "SpaceRobot",
         "States", "StudyProgress", "TimedPlan", "Trails", "TreeCycle", "Verdict", "WheelMomentum",
         "Pace", "Poses",
-        "TrajectoryContact", "TrajectoryReport",
+        "TrajectoryContact", "TrajectoryReport", "BenchProblem", "Judgement",
     }  # fmt: skip
     without_arguments = {
         "arm_names",

@@ -1,0 +1,1 @@
+"""The command `ffsr-plan bench`: the problem set."""

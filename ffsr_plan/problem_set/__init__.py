@@ -1,0 +1,1 @@
+"""The problem set: problems as data files, with the best plans known for them."""

@@ -1,0 +1,1 @@
+"""Results of any planner for the problem set, judged by `certify`."""

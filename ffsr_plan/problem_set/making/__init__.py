@@ -1,0 +1,1 @@
+"""The problem set made: problem files, and the best plans known."""

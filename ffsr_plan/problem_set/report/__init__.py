@@ -1,0 +1,1 @@
+"""Judged results compared: tables, profiles and one page."""

@@ -1,0 +1,1 @@
+"""Planners run on the problem set."""
