@@ -129,7 +129,7 @@ def test_limits_of_a_meeting_are_those_of_other_flights(plan):
 def test_joints_that_would_leave_their_limits_on_the_way_are_named(plan):
     """The later the meeting, the longer the joints turn at its rates before it."""
     late = meeting_for(NAME, at=1e5)
-    with pytest.raises(fp.InvalidInput, match=r"joint \w+ on the way.*all along the approach"):
+    with pytest.raises(fp.InvalidInput, match=r"joint \w+ on the way.*all along the curve"):
         plan.timed(meeting=late, **LIMITS[MODE])
 
 

@@ -15,16 +15,26 @@ if TYPE_CHECKING:
 
 
 def printed(table: Table) -> RenderableType:
-    """A table for the terminal.
+    """A table for the terminal, in which no name or number is cut.
 
     Args:
         table: the table.
     """
+    from rich.box import SIMPLE_HEAD
     from rich.table import Table as Printed
 
-    made = Printed(title=table.title, title_justify="left")
+    made = Printed(
+        title=table.title,
+        title_justify="left",
+        box=SIMPLE_HEAD,
+        padding=(0, 1, 0, 0),
+        pad_edge=False,
+    )
     for k, heading in enumerate(table.headings):
-        made.add_column(heading, justify="left" if k < table.texts else "right")
+        side: Any = "left" if k < table.texts else "right"
+        widest = max((len(cells[k]) for cells in table.rows), default=0)
+        least = widest if k == 0 or k >= table.texts else None  # headings and titles are wrapped
+        made.add_column(heading, justify=side, overflow="fold", min_width=least)
     for cells in table.rows:
         made.add_row(*cells)
     return made
@@ -75,7 +85,7 @@ def _problems(problems: ProblemSet, best: BestPlans, family: Sequence[str]) -> T
     rows = []
     for name in problems.names(family):
         entry, row = problems.entry(name), best.get(name)
-        figures = ("no plan known", "", "", "", "")
+        figures = ("none known", "", "", "")
         bound = ""
         if row is not None:
             bound = f"{row.bound:.4f}"
@@ -85,9 +95,16 @@ def _problems(problems: ProblemSet, best: BestPlans, family: Sequence[str]) -> T
                     f"{row.length:.3f}",
                     f"{row.delta_v:.4f}",
                     "" if row.clearance is None else f"{row.clearance:.3f}",
-                    row.planner or "",
                 )
         rows.append((name, entry["title"], f"{entry['time_limit']:g}", *figures, bound))
-    headings = ("problem", "title", "limit [s]", "F", "L [m]", "delta-v [m/s]", "clearance [m]",
-                "planner", "bound")  # fmt: skip
+    headings = (
+        "problem",
+        "title",
+        "limit [s]",
+        "F",
+        "L [m]",
+        "delta-v [m/s]",
+        "clear [m]",
+        "bound",
+    )
     return Table(f"Problem set {problems.version}, the best plans known", headings, tuple(rows), 2)
