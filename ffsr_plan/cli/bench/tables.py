@@ -85,26 +85,18 @@ def _problems(problems: ProblemSet, best: BestPlans, family: Sequence[str]) -> T
     rows = []
     for name in problems.names(family):
         entry, row = problems.entry(name), best.get(name)
-        figures = ("none known", "", "", "")
+        figures, title = ("", "", "", ""), f"{entry['title']}; no plan known"
         bound = ""
         if row is not None:
             bound = f"{row.bound:.4f}"
             if row.objective is not None:
+                title = entry["title"]
                 figures = (
                     f"{row.objective:.4f}",
                     f"{row.length:.3f}",
                     f"{row.delta_v:.4f}",
                     "" if row.clearance is None else f"{row.clearance:.3f}",
                 )
-        rows.append((name, entry["title"], f"{entry['time_limit']:g}", *figures, bound))
-    headings = (
-        "problem",
-        "title",
-        "limit [s]",
-        "F",
-        "L [m]",
-        "delta-v [m/s]",
-        "clear [m]",
-        "bound",
-    )
+        rows.append((name, title, *figures, bound))
+    headings = ("problem", "title", "F", "L [m]", "delta-v [m/s]", "clear [m]", "bound")
     return Table(f"Problem set {problems.version}, the best plans known", headings, tuple(rows), 2)
