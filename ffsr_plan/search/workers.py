@@ -108,7 +108,7 @@ def run_on_workers(
     settings = [(stop, token, own, os.getpid()) for own in begun]
     executors = [ProcessPoolExecutor(1, initializer=_start, initargs=each) for each in settings]
     try:
-        with _ctrl_c_blocked():
+        with ctrl_c_blocked():
             limit = deadline.handed_on()
             futures = [
                 executor.submit(_run_share, run, job, [rngs[k] for k in share], limit)
@@ -124,7 +124,7 @@ def run_on_workers(
             try:
                 own, seconds = future.result()
             except TerminatedWorkerError as error:
-                raise WorkerDied(worker, share, _exit_status(error)) from None
+                raise WorkerDied(worker, share, exit_status(error)) from None
             outcomes |= zip(share, own, strict=False)  # fewer after Ctrl-C
             compiling = max(compiling, seconds)
         add_compiled(compiling)
@@ -146,7 +146,7 @@ def _wait(futures: list[Future[Any]], begun: list[Any], stop: Any, deadline: Dea
 
 
 @contextmanager
-def _ctrl_c_blocked() -> Iterator[None]:
+def ctrl_c_blocked() -> Iterator[None]:
     """Processes that the body starts never receive Ctrl-C; this one receives it after the body."""
     resource_tracker.ensure_running()  # to start it would end the block
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
@@ -199,7 +199,11 @@ def _stop_requested() -> bool:
     return _stopped
 
 
-def _exit_status(error: Exception) -> str:
-    """The exit status in loky's message, such as `SIGKILL(-9)`."""
+def exit_status(error: Exception) -> str:
+    """The exit status in loky's message, such as `SIGKILL(-9)`.
+
+    Args:
+        error: that of an executor whose process ended.
+    """
     _, _, status = str(error).partition("The exit codes of the workers are {")
     return status.partition("}")[0] or "unknown"

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def printed(table: Table) -> RenderableType:
-    """A table for the terminal, in which no name or number is cut.
+    """A table for the terminal, in which titles are wrapped before names and numbers are cut.
 
     Args:
         table: the table.

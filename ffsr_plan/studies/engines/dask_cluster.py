@@ -16,8 +16,8 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from ffsr_plan.core.errors import InvalidInput
+from ffsr_plan.search.workers import ctrl_c_blocked
 from ffsr_plan.studies.engines.engine import Job, JobEnd
-from ffsr_plan.studies.engines.processes import ctrl_c_blocked
 from ffsr_plan.studies.engines.worker_side import forget, hold, packed, run_job
 from ffsr_plan.studies.tasks.grid import Grid
 from ffsr_plan.studies.tasks.row import Outcome

@@ -7,14 +7,11 @@ from __future__ import annotations
 
 import os
 import queue
-import signal
 from collections import deque
-from collections.abc import Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager
-from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any
 
+from ffsr_plan.search.workers import ctrl_c_blocked, exit_status
 from ffsr_plan.studies.engines.engine import Job, JobEnd
 from ffsr_plan.studies.engines.worker_side import packed, process_name, run_job, start_process
 from ffsr_plan.studies.tasks.grid import Grid
@@ -73,7 +70,7 @@ class Processes:
         except BrokenProcessPool as error:
             if self._executors[worker] is executor:
                 self._executors[worker] = None
-            lost = f"worker {worker} of {process_name()} ({_exit_status(error)})"
+            lost = f"worker {worker} of {process_name()} ({exit_status(error)})"
             return JobEnd(job.number, None, (lost,) if first else ())
         except Exception as error:  # of sending what came back
             return JobEnd(job.number, None, (), f"{type(error).__name__}: {error}")
@@ -103,20 +100,3 @@ class Processes:
                 future = Future()
                 future.set_exception(error)
         future.add_done_callback(lambda done: self._ends.put((worker, executor, job, done)))
-
-
-@contextmanager
-def ctrl_c_blocked() -> Iterator[None]:
-    """Processes that the body starts never receive Ctrl-C; this one receives it after the body."""
-    resource_tracker.ensure_running()  # to start it would end the block
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _exit_status(error: Exception) -> str:
-    """The exit status in loky's message, such as `SIGKILL(-9)`."""
-    _, _, status = str(error).partition("The exit codes of the workers are {")
-    return status.partition("}")[0] or "unknown"
