@@ -18,6 +18,7 @@ from ffsr_plan.problem_set.report.profiles import (
     times_and_costs,
 )
 from ffsr_plan.problem_set.report.summary import families_of, ratios
+from ffsr_plan.studies.report.figures import draw_boxes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -150,7 +151,7 @@ def _boxes_by_family(
         groups = [values_of([r for r in each.rows if r.family == name]) for name in families]
         place = (k + 0.5) / len(judged) - 0.5
         at = [j + _BOX * place for j in range(len(families))]
-        _boxes(ax, groups, at, width, k)
+        draw_boxes(ax, groups, at, width, _colour(k))
         ax.plot([], [], label=each.planner, color=_colour(k), linewidth=6, alpha=0.5)
     ax.set_xticks(range(len(families)), families, rotation=25, ha="right")
     ax.set_xlim(-0.6, len(families) - 0.4)
@@ -167,29 +168,6 @@ def _gap_values(rows: Sequence[JudgedRow], best: BestPlans) -> list[float]:
 
 def _clearances(rows: Sequence[JudgedRow]) -> list[float]:
     return [row.clearance for row in rows if row.clearance is not None]
-
-
-def _boxes(
-    ax: Axes, groups: Sequence[list[float]], at: Sequence[float], width: float, k: int
-) -> None:
-    """Boxes from quartile to quartile with the median, whiskers from 5 to 95 %."""
-    filled = [(place, values) for place, values in zip(at, groups, strict=True) if values]
-    if not filled:
-        return
-    colour = _colour(k)
-    ax.boxplot(
-        [values for _, values in filled],
-        positions=[place for place, _ in filled],
-        widths=0.8 * width,
-        whis=(5, 95),
-        showfliers=False,
-        patch_artist=True,
-        manage_ticks=False,
-        boxprops={"facecolor": colour, "alpha": 0.35, "edgecolor": colour},
-        medianprops={"color": colour, "linewidth": 1.8},
-        whiskerprops={"color": colour},
-        capprops={"color": colour},
-    )
 
 
 def _figure(lines: int, columns: int, height: float) -> tuple[Figure, list[Axes]]:

@@ -116,8 +116,11 @@ def _by_axis(rows: Sequence[Row], planners: Sequence[str], axis: str) -> Figure:
             for found, cell in zip(planned, cells, strict=True)
         ]
         left.bar(at, share, 0.9 * width, color=SERIES[k % len(SERIES)], label=name)
-        _boxes(middle, [numbers(p, "objective") for p in planned], at, width, k)
-        _boxes(right, [numbers(p, "least_clearance") for p in planned], at, width, k)
+        colour = SERIES[k % len(SERIES)]
+        draw_boxes(middle, [numbers(p, "objective") for p in planned], at.tolist(), width, colour)
+        draw_boxes(
+            right, [numbers(p, "least_clearance") for p in planned], at.tolist(), width, colour
+        )
     left.set_ylim(0.0, 102.0)
     titles = ("tasks with a plan [%]", "objective F", "proven clearance [m]")
     for ax, title in zip((left, middle, right), titles, strict=True):
@@ -131,12 +134,21 @@ def _by_axis(rows: Sequence[Row], planners: Sequence[str], axis: str) -> Figure:
     return figure
 
 
-def _boxes(ax: Axes, data: Sequence[Sequence[float]], at: Any, width: float, k: int) -> None:  # noqa: ANN401 - an array
-    """Boxes from quartile to quartile with the median, whiskers from 5 to 95 %."""
+def draw_boxes(
+    ax: Axes, data: Sequence[Sequence[float]], at: Sequence[float], width: float, colour: str
+) -> None:
+    """Boxes from quartile to quartile with the median, whiskers from 5 to 95 %.
+
+    Args:
+        ax: where they are drawn.
+        data: values of each box; without values there is none.
+        at: places of the boxes.
+        width: room for a box.
+        colour: of them.
+    """
     filled = [(place, values) for place, values in zip(at, data, strict=True) if values]
     if not filled:
         return
-    colour = SERIES[k % len(SERIES)]
     ax.boxplot(
         [values for _, values in filled],
         positions=[place for place, _ in filled],
