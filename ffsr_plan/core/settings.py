@@ -153,8 +153,12 @@ def _make(cls: type[T], *, of: str) -> type[T]:
             named[name] = value
         try:
             _adapter(made).validator.validate_python(ArgsKwargs((), named), self_instance=self)
+            return
         except ValidationError as error:
-            raise _in_our_words(made, error, of) from None
+            refusal = _in_our_words(made, error, of)
+        # outside of the handler: the context of an error is pickled with it where Dask runs, and
+        # pydantic's holds the arguments of the call, which cannot be pickled
+        raise refusal
 
     def key(self: T) -> object:
         return content([getattr(self, name) for name in names])

@@ -112,8 +112,17 @@ REFUSED = [
 def test_a_refused_argument_is_named(make, message):
     with pytest.raises(InvalidInput, match=message) as caught:
         make()
+    assert caught.value.__context__ is None
     again = pickle.loads(pickle.dumps(caught.value))
     assert str(again) == str(caught.value)
+
+
+def test_errors_are_pickled_with_all_that_dask_adds_to_them():
+    pytest.importorskip("distributed.utils")  # pickles an error's context and traceback from now on
+    for make, _ in REFUSED:
+        with pytest.raises(InvalidInput) as caught:
+            make()
+        assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
 
 
 def test_settings_are_frozen_dataclasses():
