@@ -23,6 +23,22 @@ class RoundName(ShapeName):
     __slots__ = ()
 
 
+class MemberName(ShapeName):
+    """The name of a sphere of a debris cloud: sphere 3 of debris cloud 'shell'."""
+
+    __slots__ = ()
+
+    @property
+    def number(self) -> int:
+        """Its number within the cloud."""
+        return int(self.split()[1])
+
+    @property
+    def cloud(self) -> CloudName:
+        """The name of the cloud."""
+        return CloudName(self.partition(" of ")[2])
+
+
 class ZoneName(ShapeName):
     """The name of a zone that the robot has to stay in, and whose outside is an obstacle."""
 
@@ -131,17 +147,27 @@ def closing_obstacles(contacts: tuple[Contact, ...], spheres: list[int]) -> str:
     by_source: dict[str, list[int]] = {}
     sources = {contact.obstacle: contact.source for contact in contacts}
     for sphere in spheres:
-        by_source.setdefault(sources.get(sphere, ""), []).append(sphere)
-    parts = []
-    for source, members in by_source.items():
-        word = "sphere" if source else "obstacle"
-        listed = ", ".join(map(str, members[:_MOST_NAMED]))
-        more = len(members) - _MOST_NAMED
-        text = f"{word}{'s' if len(members) > 1 else ''} {listed}"
-        text += f" and {more} more" if more > 0 else ""
-        whole = isinstance(source, ShapeName)
-        parts.append(str(source) if whole else f"{source} ({text})" if source else text)
+        source = sources.get(sphere, "")
+        if isinstance(source, MemberName):
+            by_source.setdefault(source.cloud, []).append(source.number)
+        else:
+            by_source.setdefault(source, []).append(sphere)
+    parts = [_of_source(source, members) for source, members in by_source.items()]
     links = sorted({f"'{c.link}'" for c in contacts if isinstance(c.obstacle, int)})
     verb = "link {} meets" if len(links) == 1 else "links {} meet"
     meet = f", which {verb.format(', '.join(links))}" if links else ""
     return " and ".join(parts) + (meet if parts else "")
+
+
+def _of_source(source: str, members: list[int]) -> str:
+    """Obstacles that come from the same, by their numbers."""
+    if isinstance(source, ShapeName):
+        return str(source)
+    word = "sphere" if source else "obstacle"
+    listed = ", ".join(map(str, members[:_MOST_NAMED]))
+    more = len(members) - _MOST_NAMED
+    text = f"{word}{'s' if len(members) > 1 else ''} {listed}"
+    text += f" and {more} more" if more > 0 else ""
+    if isinstance(source, CloudName):
+        return f"{text} of {source}"
+    return f"{source} ({text})" if source else text

@@ -211,7 +211,8 @@ def from_mapping(cls: type[T], value: object) -> T:
         raise
     except InvalidInput as error:
         allowed = error.allowed.removesuffix(_OR_NONE)  # in a file, the key is left out
-        raise InvalidInput(f".{error.what}", error.value, allowed) from None
+        what = f".{error.what}" if error.what else ""
+        raise InvalidInput(what, error.value, allowed) from None
 
 
 class UnknownKey(InvalidInput):

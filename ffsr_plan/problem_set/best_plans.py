@@ -36,6 +36,7 @@ class BestPlan:
         lattice_optimum: F of Eq. 8 of the exact optimum of the lattice, where that is known.
         sha256: of the file of its trajectory.
         tried: seconds that were spent on the problem in all [s].
+        verified: whether `Plan.verify` found nothing wrong with it; None if nobody asked.
     """
 
     problem: str
@@ -53,6 +54,7 @@ class BestPlan:
     lattice_optimum: float | None = None
     sha256: str | None = None
     tried: float = 0.0
+    verified: bool | None = None
 
     @property
     def gap(self) -> float | None:

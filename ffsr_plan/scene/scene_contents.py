@@ -10,7 +10,7 @@ import numpy as np
 
 from ffsr_plan.core.arrays import Array
 from ffsr_plan.core.checks import whole_number
-from ffsr_plan.core.contacts import CloudName, RoundName, ShapeName, ZoneName
+from ffsr_plan.core.contacts import CloudName, MemberName, RoundName, ShapeName, ZoneName
 from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.core.formatting import counted
 from ffsr_plan.scene.shapes.obstacle_shapes import Ball, ObstacleShape
@@ -91,7 +91,7 @@ def source_title(sources: Sequence[tuple[str, int]], place: int) -> str:
     begin = 0
     for name, count in sources:
         if place < begin + count:
-            own = ShapeName(f"sphere {place - begin} of {name}")
+            own = MemberName(f"sphere {place - begin} of {name}")
             return own if isinstance(name, CloudName) else name
         begin += count
     return ""

@@ -1,6 +1,8 @@
 """The command line: exit codes, results on disk, errors on standard error."""
 
 import json
+import subprocess
+import sys
 
 import pytest
 from typer.testing import CliRunner
@@ -237,6 +239,8 @@ def test_the_version_is_printed(run):
     result = run("--version")
     assert result.exit_code == 0
     assert result.stdout.startswith("ffsr-plan 0.")
+    command = [sys.executable, "-m", "ffsr_plan", "--version"]
+    assert subprocess.run(command, capture_output=True, text=True).stdout == result.stdout
 
 
 def test_nothing_infinite_is_printed_for_an_empty_scene(tmp_path):

@@ -8,10 +8,14 @@ import pytest
 import ffsr_plan as fp
 from ffsr_plan import errors
 from ffsr_plan.core.checks import unknown_name
-from ffsr_plan.core.contacts import Contact
+from ffsr_plan.core.contacts import Contact, MemberName
 from ffsr_plan.core.formatting import nearest_name
 
 TOUCHING = (Contact("a", 3, 0.2, "x.stl"), Contact("a", 4, 0.1, "x.stl"), Contact("a", "b", 0.1))
+OF_CLOUD = tuple(
+    Contact("arm", k, 0.1, MemberName(f"sphere {own} of debris cloud 'shell'"))
+    for k, own in ((7, 1), (9, 3))
+)
 EXAMPLES = [
     errors.InvalidInput("delta", -1, "at least 0"),
     errors.StartInCollision("base", 3, 0.1),
@@ -60,6 +64,10 @@ def test_invalid_input_is_a_value_error():
                 3, (7, 8), 40, (Contact("hand", 7, 0.1, "a.stl"), Contact("arm", 8, 0.1))
             ),
             r"closed by a.stl \(sphere 7\) and obstacle 8, which links 'arm', 'hand' meet\)",
+        ),
+        (
+            errors.NoPath(3, (7, 9), 40, OF_CLOUD),
+            r"closed by spheres 1, 3 of debris cloud 'shell', which link 'arm' meets\)",
         ),
         (
             errors.StartInCollision("a", 3, 0.2, TOUCHING, TOUCHING[:1], ("move",)),

@@ -9,6 +9,7 @@ import ffsr_plan as fp
 from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
 from ffsr_plan.problem_set.making.best_known import adopted, bound_of
 from ffsr_plan.problem_set.making.generation import FAMILIES
+from ffsr_plan.problem_set.making.rebuilt_plans import verification_faults
 
 
 def smallest(problems, best, family):
@@ -26,6 +27,35 @@ def test_a_best_plan_of_each_family_is_accepted(problems, best, family):
     assert verdict.length == pytest.approx(row.length, rel=1e-9)
     assert verdict.proven_clearance is None or verdict.proven_clearance > 0.0
     assert verdict.clearance is None or verdict.proven_clearance <= verdict.clearance + 1e-9
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_best_plan_of_each_family_is_verified_by_other_code(problems, best, family):
+    name = smallest(problems, best, family)
+    assert verification_faults(problems[name], best.trajectory(name)) == ""
+
+
+def test_every_best_plan_was_verified(problems, best):
+    rows = [row for name in problems.names() if (row := best.get(name)) and row.objective]
+    assert [row.problem for row in rows if not row.verified] == []
+
+
+def test_a_motion_through_an_obstacle_is_not_verified(problems):
+    problem = problems["paper/03"].problem
+    ends = [problem.robot.joint_values(q) for q in (problem.start, problem.goal)]
+    straight = fp.Trajectory.of_array(
+        [0.0, 100.0], ends, problem.robot.joint_names,
+        base_positions=[problem.start[:3], problem.goal[:3]],
+    )  # fmt: skip
+    assert "proven free" in verification_faults(problems["paper/03"], straight)
+
+
+def test_a_motion_that_ends_elsewhere_is_not_verified(problems, best):
+    given = best.trajectory("paper/03")
+    moved = fp.Trajectory(
+        given.times, dict(given.joints), base_positions=given.base_positions * [0.99, 1.0, 1.0]
+    )
+    assert "goal" in verification_faults(problems["paper/03"], moved)
 
 
 def test_no_best_plan_falls_below_its_bound(problems, best):

@@ -75,7 +75,7 @@ def test_bodies_are_those_of_python(tmp_path, validator):  # noqa: F811
     [
         ("duration = 100.0\nramp = 0.25", "", "duration"),
         ("duration = 100.0", "duration = 300.0", "at most 200 s"),
-        ("drift = { velocity = [0.0, 0.1, 0.0] }", "", "bodies.0.*one of drift, spin"),
+        ("drift = { velocity = [0.0, 0.1, 0.0] }", "", r"bodies\.0: .*one of drift, spin"),
         ("drift = {", "spin = { rate = [0, 0, 1] }\ndrift = {", "one of drift, spin"),
         ("velocity =", "velocty =", "velocity"),
         ("inertia = [1.0, 2.0, 2.5]", "inertia = [1.0, 2.0, 9.5]", "bodies.2.*inertia"),

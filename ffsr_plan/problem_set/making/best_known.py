@@ -28,6 +28,7 @@ from ffsr_plan.problem_set.bench_problem import BenchProblem
 from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
 from ffsr_plan.problem_set.judging.judgement import judge
 from ffsr_plan.problem_set.judging.result_files import read_results
+from ffsr_plan.problem_set.making.rebuilt_plans import verification_faults
 from ffsr_plan.problem_set.set_index import DATA, ProblemSet
 from ffsr_plan.studies.tasks.row import package_version
 
@@ -126,6 +127,7 @@ def improved(given: BenchProblem, known: BestPlans, seconds: float) -> str:
         tried=spent,
         lattice_objective=float(made.lattice_objective) if problem.lattice else None,
         lattice_optimum=_lattice_optimum(made),
+        verified=True,
     )
     if old.objective is not None and row.objective is not None and old.objective <= row.objective:
         known.put(replace(old, tried=spent), None)
@@ -176,6 +178,7 @@ def adopted(folder: Path, problems: ProblemSet, known: BestPlans) -> list[str]:
             seconds=round(result.seconds, 3),
             version=package_version(),
             lattice_objective=None,
+            verified=not verification_faults(given, trajectory),
         )
         known.put(row, trajectory)
         better.append(given.name)
