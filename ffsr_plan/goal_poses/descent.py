@@ -35,6 +35,7 @@ class Descent:
         self._high = np.where(continuous, _BEYOND_HALF_TURN, robot.upper - self._begin)
         self._free = self._high - self._low > 1e-9  # the others are fixed by their limits
         self._turning = ~robot.prismatic
+        self._latest: tuple[bytes, Array] | None = None  # a change and its end
 
     @property
     def no_change(self) -> Array:
@@ -100,7 +101,14 @@ class Descent:
 
     def _error_of_path(self, change: Array) -> Array:
         """Like `error`, but smooth where a continuous joint goes beyond half a turn."""
-        return pose_error(self._target, end_of_path(self._target, self._begin, change))
+        return pose_error(self._target, self._end_of_path(change))
+
+    def _end_of_path(self, change: Array) -> Array:
+        """(nq,) end of the path; error and Jacobian ask for the same one after the other."""
+        key = change.tobytes()
+        if self._latest is None or self._latest[0] != key:
+            self._latest = key, end_of_path(self._target, self._begin, change)
+        return self._latest[1]
 
     def _whole(self, values: Array) -> Array:
         change: Array = np.clip(0.0, self._low, self._high)
@@ -108,7 +116,7 @@ class Descent:
         return change
 
     def _jacobian(self, change: Array) -> Array:
-        return pose_jacobian(self._target, self._begin, change)
+        return pose_jacobian(self._target, self._begin, change, self._end_of_path(change))
 
 
 def descents(descent: Descent) -> list[tuple[float, Array]]:

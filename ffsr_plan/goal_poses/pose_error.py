@@ -104,18 +104,19 @@ def pose_error(target: PoseTarget, q: Array) -> Array:
     return np.concatenate([position_error, pin.log3(pose.rotation @ target.rotation.T)])
 
 
-def pose_jacobian(target: PoseTarget, begin: Array, change: Array) -> Array:
+def pose_jacobian(target: PoseTarget, begin: Array, change: Array, q: Array) -> Array:
     """Derivative of `pose_error` at the end of the path by the joint values there.
 
     Args:
         target: gives the frame, its wanted pose and the mode.
         begin: (nd,) joint values at the start [rad or m].
         change: (nd,) of the joint values over the path [rad or m].
+        q: (nq,) configuration at its end, by `end_of_path`.
 
     Returns:
         (3, nd) or (6, nd), J of the module's docstring.
     """
-    robot, q = target.robot, end_of_path(target, begin, change)
+    robot = target.robot
     model, data, pose = robot.model, robot.model.createData(), _frame_pose(target, q)
     if target.mode.floats:
         jacobian = generalized_jacobian(robot, q, model.frames[target.frame].name)
