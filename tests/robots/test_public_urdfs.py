@@ -13,6 +13,7 @@ import ffsr_plan as fp
 from ffsr_plan.robots.loading import robot_from_urdf
 from ffsr_plan.robots.urdf.canonical import read_urdf, urdf_text
 from ffsr_plan.robots.urdf.origins import transform
+from tests.helpers.sample_sizes import sample
 
 SHARE = Path(str(distribution("example-robot-data").locate_file("cmeel.prefix/share")))
 ROBOTS = SHARE / "example-robot-data" / "robots"
@@ -129,7 +130,7 @@ def test_masses_and_placements_of_public_files_are_those_of_yourdfpy(path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", files(), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", files()[:: sample(3, 1)], ids=lambda path: path.stem)
 def test_public_files_load_with_their_meshes(path):
     faults = REFUSED.get(path.stem, ())
     if any(fault not in (NO_BODY, VISUAL) for fault in faults):
