@@ -7,6 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ffsr_plan.bodies.debris.debris_cloud import DebrisCloud
+from ffsr_plan.bodies.moving_body import MovingBody
+from ffsr_plan.bodies.tumble import Tumble
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.core.errors import InvalidInput
@@ -14,11 +17,13 @@ from ffsr_plan.core.kernels.compiling_time import Stopwatch
 from ffsr_plan.fuel.least_fuel_planner import LeastFuel
 from ffsr_plan.planning.plan_and_refine import plan
 from ffsr_plan.plans.planner_registry import Planner
-from ffsr_plan.problem.lattice_settings import Axis, Lattice
+from ffsr_plan.portfolio.portfolio_planner import Portfolio
+from ffsr_plan.problem.lattice_settings import Axis, Lattice, Progress
 from ffsr_plan.problem.posture_axes import PostureAxis
 from ffsr_plan.problem.problem import Problem
 from ffsr_plan.robots.loading import load_robot
 from ffsr_plan.scene.scene import Scene
+from ffsr_plan.scene.shapes.obstacle_shapes import Box
 from ffsr_plan.search.ants.ant_system import AntSystem
 from ffsr_plan.search.ants.max_min import MaxMinAntSystem
 from ffsr_plan.search.optimum_planner import LatticeOptimum
@@ -76,9 +81,22 @@ def _cases() -> Iterator[tuple[Problem, Planner]]:
     yield without, TreePlanner(checks=100_000)
     turned = without.robot.configuration((10.0, 0.0, 0.0), attitude=(0.2, 0.0, 0.0))
     yield replace(without, goal=turned, reach_attitude=True), TreePlanner(checks=20_000)
+    yield _in_motion(replace(with_lattice, scene=Scene())), LatticeOptimum()
+    yield with_lattice, Portfolio(trees=TreePlanner(checks=10_000))
     yield (
         _across("planar_dual_arm", few, folding),
         PostureAnnealing(ants=2, cycles=2, annealing_shifts=20),
+    )
+
+
+def _in_motion(problem: Problem) -> Problem:
+    """Beside the way a box that tumbles and spheres that drift; the robot may wait for them."""
+    tumble = Tumble(inertia=(1.0, 2.0, 3.0), rate=(0.01, 0.0, 0.01))
+    box = MovingBody([Box((0.1, 0.1, 0.1))], tumble, position=(5.0, 0.0, 2.0))
+    cloud = DebrisCloud([[5.0, 0.0, -2.0]] * 2, [0.1] * 2, [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0]])
+    lattice = Lattice(10, Axis(half_count=1, spacing=0.5), progress=Progress(steps=5))
+    return replace(
+        problem, scene=Scene(bodies=[box], debris=[cloud]), lattice=lattice, duration=100.0
     )
 
 
