@@ -14,9 +14,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ffsr_plan.clusters.cluster_client import connected
-from ffsr_plan.core.errors import WorkerDied
 from ffsr_plan.core.kernels import announcement
-from ffsr_plan.core.kernels.compiling_time import Stopwatch, add_compiled
+from ffsr_plan.core.kernels.compiling_time import Stopwatch
+from ffsr_plan.search.colony_shares import outcomes_of, shares_of
 from ffsr_plan.search.records import SearchMonitor, SearchRequest
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -58,8 +58,10 @@ def run_on_cluster(
     deadline = request.deadline or Deadline()
     deadline.stage = "the search on a cluster"
     with connected(request.scheduler) as client:
+        from distributed.scheduler import KilledWorker
+
         workers = min(max(1, len(client.nthreads())), len(rngs))
-        shares = [list(range(w, len(rngs), workers)) for w in range(workers)]
+        shares = shares_of(len(rngs), workers)
         limit, name = _handed_on(deadline), f"ffsr-plan-colonies-{uuid.uuid4().hex}"
         with _stopping(name, client) as stop:
             futures = [
@@ -72,12 +74,12 @@ def run_on_cluster(
             request.begin()
             try:
                 _wait(futures, stop, deadline)
-                outcomes = _gathered(futures, shares)
+                outcomes: list[Outcome] = outcomes_of(shares, futures, KilledWorker, _last_place)
             finally:
                 client.cancel(futures, force=True)
     if not outcomes:
         deadline.check()
-    return [outcomes[k] for k in sorted(outcomes)]
+    return outcomes
 
 
 @contextmanager
@@ -104,24 +106,9 @@ def _wait(futures: list[Any], stop: Any, deadline: Deadline) -> None:  # noqa: A
         time.sleep(_POLL)
 
 
-def _gathered(futures: list[Any], shares: list[list[int]]) -> dict[int, Any]:
-    """The outcomes that are there, by the number of their colony."""
-    from distributed.scheduler import KilledWorker
-
-    outcomes: dict[int, Any] = {}
-    compiling = 0.0
-    for worker, (share, future) in enumerate(zip(shares, futures, strict=True)):
-        if not future.done():
-            continue
-        try:
-            own, seconds = future.result()
-        except KilledWorker as error:
-            last = f"unknown, on {error.last_worker.address}"
-            raise WorkerDied(worker, share, last) from None
-        outcomes |= zip(share, own, strict=False)  # fewer after Ctrl-C
-        compiling = max(compiling, seconds)
-    add_compiled(compiling)
-    return outcomes
+def _last_place(killed: Any) -> str:  # noqa: ANN401 - of Dask
+    """Where the last of the workers died that Dask gave the share to."""
+    return f"unknown, on {killed.last_worker.address}"
 
 
 def _handed_on(deadline: Deadline) -> tuple[float, float]:

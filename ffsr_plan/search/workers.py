@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ffsr_plan.core.errors import WorkerDied
 from ffsr_plan.core.kernels import announcement
-from ffsr_plan.core.kernels.compiling_time import Stopwatch, add_compiled
+from ffsr_plan.core.kernels.compiling_time import Stopwatch
 from ffsr_plan.search.cluster_colonies import run_on_cluster
+from ffsr_plan.search.colony_shares import outcomes_of, shares_of
 from ffsr_plan.search.records import SearchMonitor, SearchRequest
 from ffsr_plan.time_limit.deadline import Deadline
 
@@ -99,7 +99,7 @@ def run_on_workers(
     from loky.process_executor import TerminatedWorkerError
 
     workers = min(request.workers, len(rngs))
-    shares = [list(range(w, len(rngs), workers)) for w in range(workers)]
+    shares = shares_of(len(rngs), workers)
     context, deadline = get_context("loky"), request.deadline or Deadline()
     deadline.stage = f"the start of {workers} worker processes, or their search"
     stop, token = context.Event(), context.Lock()
@@ -116,23 +116,12 @@ def run_on_workers(
             ]
         request.begin()
         _wait(futures, begun, stop, deadline)
-        outcomes: dict[int, Outcome] = {}
-        compiling = 0.0
-        for worker, (share, future) in enumerate(zip(shares, futures, strict=True)):
-            if not future.done():
-                continue
-            try:
-                own, seconds = future.result()
-            except TerminatedWorkerError as error:
-                raise WorkerDied(worker, share, exit_status(error)) from None
-            outcomes |= zip(share, own, strict=False)  # fewer after Ctrl-C
-            compiling = max(compiling, seconds)
-        add_compiled(compiling)
+        outcomes: list[Outcome] = outcomes_of(shares, futures, TerminatedWorkerError, exit_status)
     finally:
         _end(executors)
     if not outcomes:
         deadline.check()
-    return [outcomes[k] for k in sorted(outcomes)]
+    return outcomes
 
 
 def _wait(futures: list[Future[Any]], begun: list[Any], stop: Any, deadline: Deadline) -> None:  # noqa: ANN401 - of loky

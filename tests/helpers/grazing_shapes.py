@@ -61,8 +61,11 @@ def look_at(seed, kind, scenes=5):
         scene = grazing(rng, kind, look)
         prover = Prover(motion, scene, TOLERANCE)
         ends = tuple(prover.clearances(np.array([0, 1]), np.zeros((2, 3))).tolist())
-        free = min(ends) > 0.0 and prover.certify(0, np.zeros(3), np.zeros(3), ends).free
+        verdict = prover.certify(0, np.zeros(3), np.zeros(3), ends) if min(ends) > 0.0 else None
+        free = verdict is not None and verdict.free
         least = look.least(scene, look.all)
+        if verdict is not None and not free and least > SURELY_FREE:
+            least = look.least(scene, look.around(motion, verdict.time))
         counts = Counts(
             counts.free + free,
             counts.false_free + (free and least <= 0.0),
@@ -88,13 +91,17 @@ class Look:
 
     def __init__(self, robot, q):
         self._bodies, self._start = Bodies(robot.urdf, robot.srdf, robot.replacements), q[0, :3]
-        owner = SimpleNamespace(problem=SimpleNamespace(robot=robot, start=q[0]))
-        self.all, self.few = (
-            samples_of(
-                owner, self._bodies, rows, np.zeros(len(rows)), np.zeros((len(rows), robot.nd))
-            )
-            for rows in (q, q[:: len(q) // 50])
-        )
+        self._owner = SimpleNamespace(problem=SimpleNamespace(robot=robot, start=q[0]))
+        self.all, self.few = self._samples(q), self._samples(q[:: len(q) // 50])
+
+    def _samples(self, q):
+        still = np.zeros((len(q), self._owner.problem.robot.nd))
+        return samples_of(self._owner, self._bodies, q, np.zeros(len(q)), still)
+
+    def around(self, motion, time):
+        """Samples between those before and after a time, where links may have come and gone."""
+        near = np.clip(time + np.linspace(-1.0, 1.0, SAMPLES + 1) / SAMPLES, 0.0, 1.0)
+        return self._samples(motion.at(np.zeros(SAMPLES + 1, dtype=np.int64), near))
 
     def least(self, scene, samples):
         """The least distance at some samples [m]."""
