@@ -10,7 +10,13 @@ from typer.testing import CliRunner
 import ffsr_plan as fp
 from ffsr_plan.cli import app
 from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
-from ffsr_plan.problem_set.judging.result_files import Judged, JudgedRow, read_judged, write_judged
+from ffsr_plan.problem_set.judging.result_files import (
+    Judged,
+    JudgedRow,
+    read_judged,
+    read_results,
+    write_judged,
+)
 from ffsr_plan.problem_set.report.profiles import (
     cost_over_time,
     performance_profile,
@@ -88,6 +94,8 @@ def test_lists_and_schemas_are_printed():
     "wrong",
     [
         ("run", "--planner", "rrt"),
+        ("run", "--problem", "paper/03", "--seeds", "0"),
+        ("run", "--problem", "paper/03", "--seed", "-1"),
         ("run", "--family", "trapz"),
         ("run", "--problem", "traps/99"),
         ("compare", "nowhere", "nowhere"),
@@ -98,6 +106,30 @@ def test_lists_and_schemas_are_printed():
 def test_bad_input_has_status_2(wrong, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert bench(*wrong).exit_code == 2
+
+
+def test_results_of_another_planner_are_not_replaced(small_run, tmp_path):
+    folder, _ = small_run
+    before = (folder / "results.json").read_bytes()
+    again = ("run", "--problem", SMALL[0], "--time", 3)
+    done = bench(*again, "--planner", "portfolio", "--out", folder)
+    assert done.exit_code == 2
+    assert "'default'" in done.output
+    by_hand = tmp_path / "by-hand"
+    by_hand.mkdir()
+    (by_hand / "results.json").write_bytes(before)
+    assert bench(*again, "--out", by_hand).exit_code == 2
+    assert bench(*again, "--out", folder).exit_code == 0
+    assert (folder / "results.json").read_bytes() == before  # those of the other problem stay
+
+
+def test_one_task_has_one_result(small_run, tmp_path):
+    folder, _ = small_run
+    data = json.loads((folder / "results.json").read_text())
+    for rows, message in (([], "at least one"), (data["results"] * 2, "one for each problem")):
+        (tmp_path / "results.json").write_text(json.dumps(data | {"results": rows}))
+        with pytest.raises(fp.InvalidInput, match=message):
+            read_results(tmp_path)
 
 
 def test_planners_are_known_by_name():

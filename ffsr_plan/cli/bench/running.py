@@ -11,6 +11,7 @@ from ffsr_plan.cli.bench.tables import as_data, printed
 from ffsr_plan.cli.console.output import Output
 from ffsr_plan.cli.console.terminal import INTERRUPTED, err_console
 from ffsr_plan.core.checks import path as checked_path
+from ffsr_plan.core.checks import whole_number
 from ffsr_plan.problem_set.best_plans import BestPlans
 from ffsr_plan.problem_set.judging.judged_folder import judge_folder
 from ffsr_plan.problem_set.judging.result_files import Judged, JudgedRow, read_judged
@@ -71,13 +72,15 @@ def run_and_report(wanted: Wanted, output: Output) -> bool:
     names += [each for each in wanted.problem or () if each not in names]
     signal.signal(signal.SIGINT, signal.default_int_handler)
     folder = checked_path("--out", wanted.out)
+    first = whole_number("--seed", wanted.seed, at_least=0)
+    count = whole_number("--seeds", wanted.seeds, at_least=1)
     try:
         judged = run(
             problems,
             folder,
             names,
             planner=wanted.planner,
-            seeds=range(wanted.seed, wanted.seed + max(wanted.seeds, 1)),
+            seeds=range(first, first + count),
             time_limit=wanted.time,
             workers=wanted.workers,
             progress=not output.quiet,

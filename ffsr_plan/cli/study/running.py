@@ -108,7 +108,7 @@ def _show(result: StudyResult, files: Sequence[Path], output: Output) -> None:
         if files:
             yield f"Written: {', '.join(map(str, files))}"
         else:
-            drawn = f"`ffsr-plan study report {result.directory}` draws them"
+            drawn = f"`ffsr-plan study report {shlex.quote(str(result.directory))}` draws them"
             yield f"Rows are in {result.database}; {drawn}."
 
     def data() -> dict[str, Any]:

@@ -7,14 +7,17 @@ from pathlib import Path
 from typing import Any
 
 from ffsr_plan.core.checks import number, unknown_name
+from ffsr_plan.core.errors import InvalidInput
 from ffsr_plan.plans.planner_registry import PLANNERS
 from ffsr_plan.problem_set.judging.judged_folder import row_of
 from ffsr_plan.problem_set.judging.judgement import Judgement
 from ffsr_plan.problem_set.judging.result_files import (
+    RESULTS,
     Judged,
     JudgedRow,
     Result,
     Results,
+    read_results,
     write_judged,
     write_results,
 )
@@ -59,11 +62,12 @@ def run(
 ) -> Judged:
     """Run a planner on problems, and write its results and what was judged of them.
 
-    What has a row in the folder's study is not planned again.
+    What has a row in the folder's study is not planned again, and results of other problems that
+    the same planner has left there stay among the results.
 
     Args:
         problems: the set.
-        folder: for study, results and judgements.
+        folder: for study, results and judgements; with results of this planner, or none.
         names: of the problems.
         planner: see `planner_named`.
         seeds: see `Study`.
@@ -72,12 +76,13 @@ def run(
         progress: whether to show progress.
 
     Raises:
-        InvalidInput: an argument that is not allowed.
+        InvalidInput: an argument that is not allowed, or a folder with other results.
     """
     limits = {name: problems.entry(name)["time_limit"] for name in names}
     if time_limit is not None:
         limits = dict.fromkeys(names, number("time", time_limit, above=0.0))
     made = planner_named(planner)
+    _refuse_other_results(folder, made.name)
     study = Study.__new__(Study)
     study.title = f"problem set {problems.version}, {made.name}"
     study.grid = Grid(
@@ -87,10 +92,23 @@ def run(
         limits,
     )
     result = study.run(folder / STUDY, workers=workers, progress=progress)
-    rows = [
-        row for row in result.rows() if row["problem"] in limits and row["planner"] == made.name
-    ]
+    latest: dict[tuple[str, int], dict[str, Any]] = {}  # of several times, the one that ended last
+    for row in sorted(result.rows(), key=lambda row: str(row["finished"])):
+        if row["planner"] == made.name and row["seed"] is not None:
+            latest[row["problem"], row["seed"]] = row
+    order = {name: place for place, name in enumerate(problems.names())}
+    rows = sorted(latest.values(), key=lambda row: (order[row["problem"]], row["seed"]))
     return _written(problems, folder, made.name, rows)
+
+
+def _refuse_other_results(folder: Path, planner: str) -> None:
+    """Raise `InvalidInput` where results of another planner, or by hand, would be replaced."""
+    if not (folder / RESULTS).exists():
+        return
+    there = read_results(folder).planner
+    if there != planner or not (folder / STUDY).exists():
+        allowed = f"a folder without results of anybody but '{planner}'; it has those of '{there}'"
+        raise InvalidInput("out", str(folder), allowed)
 
 
 def _source(problems: ProblemSet, name: str) -> BenchSource:
