@@ -99,7 +99,7 @@ CLAIMS = [
     ),
     Claim(
         "docs/planning.md",
-        "within 0.1 % of the optimum in all but {share} % of {runs} runs",
+        "{share} % of {runs} runs end more than 0.1 % above the optimum",
         {"share": _above("MaxMinAntSystem"), "runs": _RUNS},
     ),
     Claim(
