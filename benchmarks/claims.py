@@ -151,7 +151,7 @@ CLAIMS = [
     ),
     Claim(
         "docs/comparison.md",
-        "{first} to {fine} ms for a first path (same table)",
+        "{first} to {fine} ms for a first path, with checks called from Python (same table)",
         {
             "first": Cell("ompl", "RRTConnect", _TIME, where=_DEFAULT),
             "fine": Cell("ompl", "RRTConnect", _TIME, where=_FINE),
