@@ -16,16 +16,10 @@ from tests.helpers.closed_forms import clearances
 SAMPLES = 101
 
 
-@pytest.fixture(scope="module", params=[1001, 1008])
+@pytest.fixture(scope="module", params=["paper/06", "paper/24"])
 def problem(request):
-    """A random scene as in `benchmarks/random_scenes.py`; the shortest path hugs its obstacles."""
-    ends = fp.load_scenario("fig2a")
-    rng = np.random.default_rng(request.param)
-    count = int(rng.integers(4, 12))
-    x, y = rng.uniform(1.8, 8.2, count), rng.uniform(-3.0, 3.0, count)
-    scene = fp.Scene(np.stack([x, y, np.zeros(count)], axis=1), rng.uniform(0.15, 0.5, count))
-    lattice = fp.Lattice(40, fp.Axis(20, 0.15))
-    return fp.Problem(ends.robot, scene, ends.start, ends.goal, lattice=lattice)
+    """A problem of the set, for the shortest path, which hugs its obstacles."""
+    return replace(fp.ProblemSet()[request.param].problem, delta=0.0, length_unit=1.0)
 
 
 def least_clearance(motion, scene):

@@ -2,9 +2,9 @@
 
     python -m benchmarks.studies.attitude.base_reaction
 
-Random scenes (`benchmarks/random_scenes.py`) are planned with the attitude held. The same base path
-and arm motion is then flown with the base reacting, for several base masses, and compared with
-plans of the same scenes made with reaction. Writes docs/benchmarks/base_reaction.md and
+Problems of family `paper` are planned with the attitude held. The same base path and arm motion is
+then flown with the base reacting, for several base masses, and compared with plans of the same
+problems made with reaction. Writes docs/benchmarks/base_reaction.md and
 base_reaction.png. It takes about ten minutes.
 
 A base of another mass is the base of the paper's robot with its mass and moments of inertia scaled
@@ -16,7 +16,6 @@ import sys
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -25,7 +24,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import NUMBERS, add_problems_option, paper_problem, problem_name
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.prover import Prover
@@ -43,7 +43,7 @@ class Flight(NamedTuple):
     """A plan that assumes a held attitude, flown by a base that reacts.
 
     Attributes:
-        seed: seed of the scene.
+        number: of the problem in family `paper`.
         delta: weight of clearances in F.
         mass: of the base [kg].
         least: least distance of a link to an obstacle [m], in closed form at all samples.
@@ -52,7 +52,7 @@ class Flight(NamedTuple):
         verified: whether that plan passes `verify()`.
     """
 
-    seed: int
+    number: int
     delta: float
     mass: float
     least: float
@@ -79,7 +79,7 @@ def flown(plan: fp.Plan, robot: fp.SpaceRobot) -> fp.Plan:
     problem = replace(plan.problem, robot=robot, mode="free-flying")
     along = plan.configurations[:, :3]
     motion = Motion(robot, problem.mode, problem.start, problem.goal, along)
-    return replace(plan, problem=problem, configurations=motion.configurations())
+    return replace(plan, problem=problem, motion=motion)
 
 
 def turns(robot: fp.SpaceRobot, problem: fp.Problem) -> float:
@@ -102,48 +102,48 @@ def proven(plan: fp.Plan) -> bool:
     )
 
 
-def planned(seed: int, robots: Iterable[fp.SpaceRobot]) -> Iterator[tuple[fp.Plan, list[fp.Plan]]]:
+def planned(
+    number: int, robots: Iterable[fp.SpaceRobot]
+) -> Iterator[tuple[fp.Plan, list[fp.Plan]]]:
     """For each delta the plan with the attitude held, and those with reaction."""
     for delta in DELTAS:
-        problem = random_problem(seed, delta)
+        problem = paper_problem(number, delta)
         held = fp.plan(replace(problem, mode="attitude-held"), PLANNER)
         yield held, [fp.plan(replace(problem, robot=robot), PLANNER) for robot in robots]
 
 
 def measure(
-    scenes: int, first_seed: int, samples: int
+    numbers: Iterable[int], samples: int
 ) -> tuple[list[Flight], dict[type[fp.PlanningError], int]]:
-    """The flights of the first scenes with a path in both modes, and why others were skipped.
+    """The flights of the scenes with a path in both modes, and why others were skipped.
 
     A scene counts if it has a path with the attitude held and with reaction for every base mass.
     Then no collision is caused by a goal or a passage that cannot be reached.
     """
-    ends = random_problem(first_seed, 0.0)
+    ends = paper_problem(NUMBERS[0], 0.0)
     robots = {mass: with_base(ends.robot, mass) for mass in MASSES}
     flights: list[Flight] = []
     refused: dict[type[fp.PlanningError], int] = {}
-    left = scenes
-    for seed in count(first_seed):
-        if not left:
-            break
+    for number in numbers:
         try:
-            plans = list(planned(seed, robots.values()))
+            plans = list(planned(number, robots.values()))
         except fp.PlanningError as error:
             refused[type(error)] = refused.get(type(error), 0) + 1
             continue
-        left -= 1
         for held, reacting in plans:
             for (mass, robot), rival in zip(robots.items(), reacting, strict=True):
                 flight = flown(held, robot)
                 least, free = flight.verify(samples).least_clearance, proven(flight)
                 if free and least <= 0.0:
-                    raise RuntimeError(f"scene {seed}: proven free, {-least:.3g} m inside")
+                    raise RuntimeError(
+                        f"{problem_name(number)}: proven free, {-least:.3g} m inside"
+                    )
                 report = rival.verify(samples)
                 delta = held.problem.delta
                 flights.append(
-                    Flight(seed, delta, mass, least, free, report.least_clearance, report.ok)
+                    Flight(number, delta, mass, least, free, report.least_clearance, report.ok)
                 )
-        print(f"scene {seed}, {left} to go", file=sys.stderr, flush=True)
+        print(problem_name(number), file=sys.stderr, flush=True)
     return flights, refused
 
 
@@ -208,11 +208,12 @@ TEXT = """# Planned as if the attitude were held, flown with a base that reacts
 
 `{command}`
 
-{scenes} random scenes (`benchmarks/random_scenes.py`, seeds from {first}), the exact lattice
-optimum, refined. Each is planned with the attitude held, start and goal attitude equal, and proven
-free in that mode. Then the same base path and arm motion is flown with the base reacting. The last
-columns show plans of the same scenes made with reaction. The table counts colliding plans out of
-{scenes} for each delta and base mass, in brackets those that collide by {deep:g} mm or more.
+{scenes} of {problems} problems of family `paper` of [the problem set](../howto/problem_set.md), the
+exact lattice optimum, refined. Each is planned with the attitude held, start and goal attitude
+equal, and proven free in that mode. Then the same base path and arm motion is flown with the base
+reacting. The last columns show plans of the same problems made with reaction. The table counts
+colliding plans out of {scenes} for each delta and base mass, in brackets those that collide by
+{deep:g} mm or more.
 
 {results}
 
@@ -223,49 +224,48 @@ columns show plans of the same scenes made with reaction. The table counts colli
   pass all its checks, momentum included. The flown motions were certified too, edge by edge:
   {proofs}.
 - The depth is how far a link would have to be moved to come free.
-- The arms' motion is that of `scenarios/fig2a.toml` in all scenes. It alone determines how far the
-  base turns, the same on every path. A plan with the attitude held does not depend on masses, so
-  there is one plan for all bases.
+- The arms' motion is that of `scenarios/fig2a.toml` in all problems. It alone determines how far
+  the base turns, the same on every path. A plan with the attitude held does not depend on masses,
+  so there is one plan for all bases.
 - The base is that of the paper's robot, 5 kg; for the others its mass and its moments of inertia
   are multiplied by one factor in the URDF. Its shape and the arms (2.2 kg in all) do not change.
   Only the ratio matters: 20 kg corresponds to a satellite whose arms have a tenth of its mass.
-- A scene counts if it has a path with the attitude held and with reaction for every base mass,
+- A problem counts if it has a path with the attitude held and with reaction for every base mass,
   where the goal is checked at the attitude that is reached. So no collision counted here is caused
   by the goal or by a closed passage. Skipped: {refused}.
 - Plans with little clearance collide at small rotations. At delta = 0 the lattice spacing alone
   determines the clearance, and for most plans one degree suffices. With clearance in the cost fewer
-  plans collide, because the clearance exceeds the error. A large delta does not prevent collisions:
-  F depends on clearances at the nodes only, and such a path may pass close to obstacles between
-  them.
+  plans collide, because the clearance exceeds the error. Which delta is enough depends on the scene
+  and on the base; only a plan with reaction is known to be free.
 """
 
 
 def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--scenes", type=int, default=40, help="scenes with a path in both modes")
+    add_problems_option(parser)
     parser.add_argument("--samples", type=int, default=500, help="distance checks per edge")
-    parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help="of the scenes")
     parser.add_argument("--out", type=Path, default=RESULTS, help="directory")
     args = parser.parse_args()
     begin = time.perf_counter()
-    flights, refused = measure(args.scenes, args.first_seed, args.samples)
-    ends = random_problem(args.first_seed, 0.0)
+    flights, refused = measure(NUMBERS[: args.problems], args.samples)
+    scenes = len({flight.number for flight in flights})
+    ends = paper_problem(NUMBERS[0], 0.0)
     angles = {mass: turns(with_base(ends.robot, mass), ends) for mass in MASSES}
     args.out.mkdir(parents=True, exist_ok=True)
-    draw(flights, angles, args.scenes, args.out / "base_reaction.png")
+    draw(flights, angles, scenes, args.out / "base_reaction.png")
     header = ["base mass [kg]", "base turns by [deg]"]
     header += [f"planned as if held, delta = {delta:g}: collide" for delta in DELTAS]
     header += ["deepest [mm]", "planned with reaction, all deltas: collide", "verified"]
     hits = sum(f.least <= 0.0 for f in flights)
     cautious = sum(f.least > 0.0 and not f.proven for f in flights)
-    lost = ", ".join(f"{n} scenes with `{kind.__name__}`" for kind, n in refused.items())
+    lost = ", ".join(f"{n} with `{kind.__name__}`" for kind, n in refused.items())
     publish(
         TEXT.format(
-            command=f"python -m benchmarks.studies.attitude.base_reaction --scenes {args.scenes} "
-            f"--samples {args.samples} --first-seed {args.first_seed}",
-            scenes=args.scenes,
-            first=args.first_seed,
+            command=f"python -m benchmarks.studies.attitude.base_reaction "
+            f"--problems {args.problems} --samples {args.samples}",
+            scenes=scenes,
+            problems=args.problems,
             samples=f"{args.samples:,}".replace(",", " "),
             results=table(header, [row(flights, mass, angles[mass]) for mass in MASSES]),
             proofs=f"all {hits} that collide are refused, and of the {len(flights) - hits} others "

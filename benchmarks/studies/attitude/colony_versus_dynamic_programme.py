@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.attitude.gates import variation
 from benchmarks.studies.attitude.yaw_dynamic_programme import (
     REACHABLE,

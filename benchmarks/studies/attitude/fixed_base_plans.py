@@ -19,7 +19,7 @@ import ompl.geometric as og
 import ompl.util as ou
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.collision.distances import ObstacleQuery, SelfQuery
 from ffsr_plan.core.rotations import IDENTITY
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.scene.generators import gate
 
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.core.rotations import angle_between
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.search.postures.posture_lattice import PostureLattice

@@ -18,7 +18,7 @@ import tempfile
 import time
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 
 SCENES, SEEDS = 50, 20
 PLANNERS = {

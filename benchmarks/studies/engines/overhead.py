@@ -13,7 +13,7 @@ import time
 from dataclasses import dataclass
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 
 CASES = [  # engine, workers, tasks, seconds of a task
     ("in-process", 1, 60, 1.0),

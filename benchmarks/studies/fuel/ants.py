@@ -15,7 +15,8 @@ import numpy as np
 from numba import njit
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import NUMBERS, paper_problem
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.fuel.lattice_search import programme_of
 
 FIRST_SEED = 5000
@@ -88,8 +89,8 @@ def colony(programme, at, step, allowed, status, power, seconds, seed):
 
 
 def scene(seed):
-    """Spheres in a corridor of 10 m, and the problem of the planar scenes among them, in space."""
-    rng, planar = np.random.default_rng(seed), random_problem(1000, 0.0, LATTICE)
+    """Spheres in a corridor of 10 m, among them robot and ends of family `paper`, in space."""
+    rng, planar = np.random.default_rng(seed), paper_problem(NUMBERS[0], 0.0, LATTICE)
     count = int(rng.integers(20, 36))
     centers = rng.uniform((1.8, -1.8, -1.8), (8.2, 1.8, 1.8), (count, 3))
     spheres = fp.Scene(centers, rng.uniform(0.3, 0.8, count))
@@ -120,11 +121,14 @@ def examine(seed, seconds):
 HEADER = ("method", "mean gap [%]", "worst [%]", "optimal", "found after, median [s]")
 TEXT = """# Ants against the pair programme
 
-`python -m benchmarks.studies.fuel.ants --scenes {scenes} --seconds {seconds:g}`: paths of least
-change of velocity past 20 to 35 spheres in a corridor of 10 m, on a lattice of 40 divisions and 441
-nodes a layer; edges are taken as free. Ants see the cost of a step and the bound on what is left,
-greed is drawn anew in each cycle, and the best of {ants} ants is improved by local search. They
-have {seconds:g} s of processor time; the time of the programme contains its proof of optimality.
+`python -m benchmarks.studies.fuel.ants --scenes {scenes} --seconds {seconds:g}`
+
+Paths of least change of velocity past 20 to 35 spheres in a corridor of 10 m, on a lattice of 40
+divisions and 441 nodes a layer; robot, start and goal are those of family `paper` of
+[the problem set](../howto/problem_set.md), the spheres are drawn from seeds. Edges are taken as
+free. Ants see the cost of a step and the bound on what is left, greed is drawn anew in
+each cycle, and the best of {ants} ants is improved by local search. They have {seconds:g} s of
+processor time; the time of the programme contains its proof of optimality.
 
 {results}
 

@@ -2,7 +2,7 @@
 
     python -m benchmarks.studies.fuel.equal_clearance
 
-plans random scenes by the optimum of F, refined, and by `LeastFuel`, and writes
+plans problems of family `paper` by the optimum of F, refined, and by `LeastFuel`, and writes
 docs/benchmarks/least_fuel.md.
 """
 
@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import NUMBERS, add_problems_option, paper_problem
+from benchmarks.report_pages import RESULTS, publish, table
 
 DELTAS = (0.0, 0.001, 0.05)
 WEIGHT = 0.05
@@ -36,9 +37,9 @@ def curve_change(positions):
 
 @dataclass
 class Case:
-    """One scene: changes of velocity of curves [m], and what `LeastFuel` took."""
+    """One problem: changes of velocity of curves [m], and what `LeastFuel` took."""
 
-    seed: int
+    number: int
     by_delta: dict[float, float]
     at_margin: float
     at_clearance: float | None
@@ -59,20 +60,20 @@ def least_fuel(problem, margin):
     return plan, time.process_time() - begin
 
 
-def examine(seed):
-    """A `Case`; None if the scene has no path."""
+def examine(number):
+    """A `Case`; None if the problem has no path."""
     try:
-        optimal = {d: fp.plan(random_problem(seed, d), fp.LatticeOptimum()) for d in DELTAS}
+        optimal = {d: fp.plan(paper_problem(number, d), fp.LatticeOptimum()) for d in DELTAS}
     except fp.PlanningError:
         return None
-    wide, problem = optimal[WEIGHT], random_problem(seed, WEIGHT)
+    wide, problem = optimal[WEIGHT], paper_problem(number, WEIGHT)
     first, spent = least_fuel(problem, MARGIN)
     if first is None:
         return None
     second, more = least_fuel(problem, SPARE * wide.certificate.least_clearance)
     plans = [plan for plan in (first, second) if plan is not None]
     return Case(
-        seed=seed,
+        number=number,
         by_delta={d: curve_change(plan.motion.positions) for d, plan in optimal.items()},
         at_margin=curve_change(first.motion.positions),
         at_clearance=None if second is None else curve_change(second.motion.positions),
@@ -103,18 +104,20 @@ def rows(cases):
 HEADER = ("`LeastFuel` with", "plans", "median [%]", "least [%]", "greatest [%]")
 TEXT = """# Delta-v of paths of least fuel
 
-`python -m benchmarks.studies.fuel.equal_clearance`: the random scenes of
-`benchmarks/random_scenes.py` from seed {first}, of which {count} of {scenes} have a path. Their
-F-optimal plans are `LatticeOptimum()`, refined; `LeastFuel` has default settings but for the
-margin. Compared is the total change of velocity along the smooth curve of the plan's nodes at
-constant pace, by which delta-v at a given duration differs.
+`python -m benchmarks.studies.fuel.equal_clearance --problems {problems}`
+
+{count} of {problems} problems of family `paper` of [the problem set](../howto/problem_set.md),
+those that have a path. Their F-optimal plans are `LatticeOptimum()`, refined; `LeastFuel` has
+default settings but for the margin. Compared is the total change of velocity along the
+smooth curve of the plan's nodes at constant pace, by which delta-v at a given duration differs.
 
 {results}
 
 Equal clearance: the margin is {spare:.0f} % of the proven clearance of the F-optimal path.
-{missing}The proven clearance is then {reached:+.1f} % of it in the median. `LeastFuel` takes
-{seconds:.2f} s of processor time in the median, {most:.2f} s at most. The smooth curve is proven as
-it is (`plan.smooth().kind == "spline"`) for {spline} of {plans} plans. The search on the planner's
+{missing}
+The proven clearance is then {reached:+.1f} % of it in the median. `LeastFuel` takes {seconds:.2f} s
+of processor time in the median, {most:.2f} s at most. The smooth curve is proven as it is
+(`plan.smooth().kind == "spline"`) for {spline} of {plans} plans. The search on the planner's
 lattice is exact: gap 0 in {exact} of {gaps} plans.
 
 On `fig2a` at 200 s and a margin of 2 cm the bound on delta-v is {fig2a:.4f} m/s; along the straight
@@ -125,12 +128,12 @@ line it is 0.1 m/s.
 def main():
     """Run the study and write its report."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=34, help="number of seeds")
+    add_problems_option(parser)
     parser.add_argument("--out", type=Path, default=RESULTS / "least_fuel.md", help="the report")
     given = parser.parse_args()
     fig2a = fp.plan(fp.load_scenario("fig2a"), fp.LeastFuel(margin=MARGIN))
-    seeds = range(FIRST_SEED, FIRST_SEED + given.scenes)
-    cases = [case for case in map(examine, seeds) if case is not None]
+    numbers = NUMBERS[: given.problems]
+    cases = [case for case in map(examine, numbers) if case is not None]
     both = [case for case in cases if case.reached is not None]
     lost = len(cases) - len(both)
     kinds = [kind for case in cases for kind in case.kinds]
@@ -138,14 +141,11 @@ def main():
     seconds = [each for case in cases for each in case.seconds]
     change = np.median([case.reached / case.clearance - 1.0 for case in both])
     text = TEXT.format(
-        first=FIRST_SEED,
         count=len(cases),
-        scenes=given.scenes,
+        problems=given.problems,
         results=table(HEADER, rows(cases)),
         spare=100 * SPARE,
-        missing=f"With it {lost} scenes had no path that could be found and proven. "
-        if lost
-        else "",
+        missing=f"With it no path was found and proven in {lost} of {len(cases)} problems.",
         reached=100 * change,
         seconds=np.median(seconds),
         most=max(seconds),

@@ -2,8 +2,8 @@
 
     python -m benchmarks.studies.fuel.flights
 
-times plans of the paper's scenarios, of random scenes and of gates, verifies every flight, and
-writes docs/benchmarks/flights_and_fuel.md.
+times plans of the paper's scenarios, of problems of family `paper` and of gates, verifies every
+flight, and writes docs/benchmarks/flights_and_fuel.md.
 """
 
 import argparse
@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import NUMBERS, add_problems_option, paper_problem, problem_name
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.attitude.gates import variation
 
 LIMITS = {"joint_acceleration": 0.05, "thruster_acceleration": 0.01}
@@ -74,16 +75,16 @@ def flights_of(plan: fp.Plan) -> Flights:
     return Flights(rests, fastest, calm, fuel, (verified, len(every)), seconds)
 
 
-def random_flights(seeds: range) -> list[Flights]:
-    """Those of the random scenes that have a path."""
+def family_flights(numbers: range) -> list[Flights]:
+    """Those of the problems of family `paper` that have a path."""
     found = []
-    for seed in seeds:
+    for number in numbers:
         try:
-            plan = fp.plan(random_problem(seed, DELTA), fp.LatticeOptimum())
+            plan = fp.plan(paper_problem(number, DELTA), fp.LatticeOptimum())
         except fp.PlanningError:
             continue
         found.append(flights_of(plan))
-        print(seed, found[-1].rests, found[-1].calm, found[-1].fuel, flush=True)
+        print(problem_name(number), found[-1].rests, found[-1].calm, found[-1].fuel, flush=True)
     return found
 
 
@@ -135,15 +136,16 @@ HEADER = (
     "problem", "rests: s", "m/s", "smooth, fastest: s", "m/s", "smooth, time of rests: m/s",
     "least fuel: m/s", "straight line: m/s",
 )  # fmt: skip
-RATIOS = ("ratio", "scenes", "median", "least", "greatest")
+RATIOS = ("ratio", "problems", "median", "least", "greatest")
 TEXT = """# Durations and delta-v of flights
 
-`python -m benchmarks.studies.fuel.flights --scenes {scenes} --variations {variations}`
+`python -m benchmarks.studies.fuel.flights --problems {problems} --variations {variations}`
 
 Joints may accelerate at {joints:g} rad/s^2, thrusters at {thrust:g} m/s^2; the limits on velocity
-are the URDF's. The random scenes are those of `benchmarks/random_scenes.py` from seed {first}, of
-which {count} of {scenes} have a path, with delta {delta:g} and `LatticeOptimum()`, refined; gates
-are the variations of [gates.md](gates.md), the others have the planner of their scenario.
+are the URDF's. {count} of {problems} problems of family `paper` of
+[the problem set](../howto/problem_set.md) have a path and are planned with delta {delta:g} and
+`LatticeOptimum()`, refined; gates are the variations of [gates.md](gates.md), the others have the
+planner of their scenario.
 
 {results}
 
@@ -152,7 +154,7 @@ fastest, and with the duration of the flight with rests. Least fuel: `LeastFuel`
 the plan's proven clearance in the same time; it has no lattices with posture axes, such as those of
 gates. Straight line: one push, a coast and one push in the same time, if nothing were in the way.
 
-## Random scenes, medians of ratios
+## Family `paper`, medians of ratios
 
 {ratios}
 
@@ -171,7 +173,7 @@ median, {most:.2f} s at most.
 def main() -> None:
     """Run the study and write its report."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--scenes", type=int, default=34, help="number of seeds")
+    add_problems_option(parser)
     parser.add_argument("--variations", type=int, default=3, help="of each gate")
     parser.add_argument("--out", type=Path, default=RESULTS / "flights_and_fuel.md")
     given = parser.parse_args()
@@ -181,22 +183,21 @@ def main() -> None:
     for name in GATES:
         plans = (fp.plan(variation(name, k), seed=0) for k in range(given.variations))
         flown[f"`{name}`, {given.variations} variations"] = [flights_of(plan) for plan in plans]
-    random = random_flights(range(FIRST_SEED, FIRST_SEED + given.scenes))
-    flown[f"{len(random)} random scenes"] = random
+    family = family_flights(NUMBERS[: given.problems])
+    flown[f"{len(family)} problems of family `paper`"] = family
     every = [flights for group in flown.values() for flights in group]
     seconds = [each for flights in every for each in flights.seconds]
     calm, fuel = fig2a.timed(**LIMITS, duration=FIG2A), least_fuel(fig2a)
     text = TEXT.format(
-        scenes=given.scenes,
+        problems=given.problems,
         variations=given.variations,
         joints=LIMITS["joint_acceleration"],
         thrust=LIMITS["thruster_acceleration"],
-        first=FIRST_SEED,
-        count=len(random),
+        count=len(family),
         delta=DELTA,
         results=table(HEADER, [row(name, group) for name, group in flown.items()]),
         spare=100 * SPARE,
-        ratios=table(RATIOS, ratio_rows(random)),
+        ratios=table(RATIOS, ratio_rows(family)),
         fig2a=FIG2A,
         smooth=calm.delta_v,
         fuel="-" if fuel is None else f"{fuel.timed(**LIMITS, duration=FIG2A).delta_v:.4f}",

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.general.families import drawn
 from benchmarks.studies.general.free_space import NAMES
 from ffsr_plan.core.kernels.compilation import kernel

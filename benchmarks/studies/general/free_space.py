@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.speed.reference import Reference
 from benchmarks.studies.general.families import drawn
 from ffsr_plan.core import rotations

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.general.free_space import NAMES, problems
 from tests.helpers.dense_flight import least_gap
 from tests.helpers.free_scenes import held_turn

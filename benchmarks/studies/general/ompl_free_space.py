@@ -21,7 +21,7 @@ import ompl.geometric as og
 import ompl.util as ou
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.general.assumed_attitudes import HELD, STRAIGHT, Checker
 from benchmarks.studies.general.free_space import problems
 from tests.helpers.dense_flight import flown, least_gap

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.attitude.gates import variation
 from benchmarks.studies.attitude.turning import AXES, SPATIAL, planar
 from ffsr_plan.problem.free_objective import stations_objective

@@ -9,7 +9,7 @@ runs the first problems of each family within their times, and OMPL's RRTConnect
 import argparse
 from pathlib import Path
 
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.problem_set.report.bench_page import write_page
 from ffsr_plan.problem_set.report.summary import compared, family_table, reasons
 from ffsr_plan.problem_set.running.bench_run import run

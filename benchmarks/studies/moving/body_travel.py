@@ -21,7 +21,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.bodies.pace import Pace
 from ffsr_plan.collision.body_distances import BodyDistances
 from ffsr_plan.collision.distances import ObstacleQuery

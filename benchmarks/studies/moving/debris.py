@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.moving.body_travel import paragraph
 from ffsr_plan.collision.debris.debris_distances import DebrisDistances
 from ffsr_plan.collision.shape_placements import shape_placements

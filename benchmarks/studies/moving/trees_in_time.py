@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.moving.body_travel import paragraph
 from benchmarks.studies.moving.flight_check import MILLISECOND, Obstacles, check_flight
 from benchmarks.studies.moving.waiting import ends_are_free

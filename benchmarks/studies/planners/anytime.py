@@ -2,13 +2,14 @@
 
     python -m benchmarks.studies.planners.anytime
 
-records the time of every cycle of the Ant System and of the default colony on four random scenes
-(`benchmarks/random_scenes.py`, delta = 2), and writes docs/benchmarks/anytime.md and anytime.png.
-It takes a few seconds.
+records the time of every cycle of the Ant System and of the default colony on four
+problems of family `paper` with delta = 2, and writes docs/benchmarks/anytime.md and anytime.png. It
+takes a few seconds.
 """
 
 import argparse
 import time
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,7 +18,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, RESULTS, Case, cases, publish, table
+from benchmarks.paper_scenes import NUMBERS, Case, cases
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.lattice.optimum import lattice_optimum
 from ffsr_plan.search.records import SearchMonitor
 
@@ -78,7 +80,7 @@ def draw(axes: Axes, case: Case, runs: dict[str, list[Descent]], exact: float) -
                 gap = max(run.gaps[place], FLOOR)
                 axes.plot(1e3 * run.times[place], gap, marker, ms=5, color=COLOURS[name])
     axes.plot(1e3 * exact, FLOOR, "k*", ms=11, label="LatticeOptimum", clip_on=False, zorder=5)
-    axes.set(xscale="log", yscale="log", title=f"scene {case.seed}", ylim=(FLOOR * 0.8, 3.0))
+    axes.set(xscale="log", yscale="log", title=case.name, ylim=(FLOOR * 0.8, 3.0))
     axes.set_yticks([1.0, 0.1, 0.01, 0.001, FLOOR], ["100 %", "10 %", "1 %", "0.1 %", "≤ 0.01 %"])
     axes.xaxis.set_major_formatter("{x:g}")
     axes.grid(alpha=0.3)
@@ -97,12 +99,10 @@ def cell(descents: list[Descent], gap: float) -> str:
 def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--runs", type=int, default=5, help="seeds for each scene")
-    parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help="of the scenes")
+    parser.add_argument("--runs", type=int, default=5, help="seeds for each problem")
     parser.add_argument("--out", type=Path, default=RESULTS, help="directory")
     args = parser.parse_args()
-    chosen = cases(range(args.first_seed, args.first_seed + 100), DELTA)
-    found = [case for case, _ in zip(chosen, range(SCENES), strict=False)]
+    found = list(islice(cases(NUMBERS, DELTA), SCENES))
     planners = {"AntSystem": fp.AntSystem(), "MaxMinAntSystem": fp.MaxMinAntSystem()}
     rows = []
     figure, panels = plt.subplots(2, 2, figsize=(10, 7), sharex=True, sharey=True)
@@ -119,8 +119,8 @@ def main() -> None:
             end = f"{100.0 * np.median([run.gaps[-1] for run in descents]):.2f}"
             whole = f"{1e3 * np.median([run.times[-1] for run in descents]):.0f}"
             times = [cell(descents, gap) for gap in WITHIN]
-            rows.append([f"{case.seed}, {name}", *times, whole, end])
-        rows.append([f"{case.seed}, LatticeOptimum", *3 * [""], f"{1e3 * exact:.1f}", "0.00"])
+            rows.append([f"{case.name}, {name}", *times, whole, end])
+        rows.append([f"{case.name}, LatticeOptimum", *3 * [""], f"{1e3 * exact:.1f}", "0.00"])
     for axes in panels[1]:
         axes.set_xlabel("CPU time of the search [ms]")
     for axes in panels[:, 0]:
@@ -131,7 +131,7 @@ def main() -> None:
     args.out.mkdir(parents=True, exist_ok=True)
     figure.savefig(args.out / "anytime.png", dpi=110)
     header = [
-        "scene, planner",
+        "problem, planner",
         "to 10 %",
         "to 1 %",
         "to 0.1 %",
@@ -140,10 +140,10 @@ def main() -> None:
     ]
     publish(
         "# Best F against time\n\n"
-        f"    python -m benchmarks.studies.planners.anytime --runs {args.runs} "
-        f"--first-seed {args.first_seed}\n\n"
+        f"    python -m benchmarks.studies.planners.anytime --runs {args.runs}\n\n"
         f"Median CPU time [ms] over {args.runs} seeds until the best path is within 10, 1 and "
-        f"0.1 % of the exact lattice optimum; random scenes, delta = {DELTA:g}, 41 x 41 "
+        f"0.1 % of the exact lattice optimum; the first {SCENES} problems of family `paper` of "
+        f"[the problem set](../howto/problem_set.md) that have a path, delta = {DELTA:g}, 41 x 41 "
         "nodes. The times include the evaluation of nodes, the proofs of edges, and the recording "
         "of "
         "each cycle. In brackets the number of runs that reached the gap, if some did not.\n\n"

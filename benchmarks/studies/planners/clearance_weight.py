@@ -2,7 +2,7 @@
 
     python -m benchmarks.studies.planners.clearance_weight
 
-plans the same random scenes with several weights by the default planner, and writes
+plans problems of family `paper` with several weights by the default planner, and writes
 docs/benchmarks/clearance_weight.md.
 """
 
@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import NUMBERS, add_problems_option, cases, paper_problem
+from benchmarks.report_pages import RESULTS, publish, table
 
-FIRST_SEED = 5000
 DELTAS = (0.0, 0.005, 0.02, 0.05, 0.2)
 FAR_LESS = 0.5
 
@@ -40,9 +40,9 @@ class Figures(NamedTuple):
     seconds: float
 
 
-def planned(seed, delta, refine):
-    """The `Figures` of a scene."""
-    problem, begin = random_problem(seed, delta), time.process_time()
+def planned(number, delta, refine):
+    """The `Figures` of a problem."""
+    problem, begin = paper_problem(number, delta), time.process_time()
     plan = fp.plan(problem, refine=refine)
     return Figures(
         plan.certificate.least_clearance,
@@ -51,20 +51,6 @@ def planned(seed, delta, refine):
         plan.motion_objective,
         time.process_time() - begin,
     )
-
-
-def scenes(count):
-    """Seeds of scenes that have a path."""
-    seed = FIRST_SEED
-    while count:
-        try:
-            fp.plan(random_problem(seed, 0.0), fp.LatticeOptimum(), refine=False)
-        except (fp.NoPath, fp.StartInCollision, fp.GoalInCollision):
-            pass
-        else:
-            count -= 1
-            yield seed
-        seed += 1
 
 
 def row(delta, refine, plans, before):
@@ -96,7 +82,7 @@ HEADER = (
     "proven clearance: median [mm]",
     "quartiles [mm]",
     "least [mm]",
-    "scenes with less than half",
+    "problems with less than half",
     "L [m]",
     "F",
     "F of the whole motion",
@@ -104,42 +90,57 @@ HEADER = (
 )
 TEXT = """# Clearance against its weight
 
-`{command}`: the default planner in {scenes} random scenes that have a path
-(`benchmarks/random_scenes.py`, seeds from {first}), the same scenes for every delta. L, F and times
-are medians; times are processor times. {minutes:.1f} minutes in all.
+`{command}`
+
+The default planner on {count} of {problems} problems of family `paper` of
+[the problem set](../howto/problem_set.md), those that have a path, the same for every delta. L, F
+and times are medians; times are processor times. {minutes:.1f} minutes in all.
 
 {results}
 
 - F contains the clearances at the nodes; F of the whole motion, `plan.motion_objective`, the least
   clearance on every edge. Refinement lowers the latter.
 - On the lattice, where F counts, a large delta lets some paths pass obstacles closely between two
-  nodes. After refinement every quartile of the clearance grows with delta, and so does the least.
-- "Scenes with less than half" have less than half of the clearance that they have at the delta
+  nodes. {refined}
+- "Problems with less than half" have less than half of the clearance that they have at the delta
   before.
 """
 
 
+def monotone(groups):
+    """What happens to quartiles and least clearance as delta grows, in a sentence."""
+    quantiles = np.array(
+        [np.quantile([p.clearance for p in g], [0, 0.25, 0.5, 0.75]) for g in groups]
+    )
+    if np.all(np.diff(quantiles, axis=0) >= -1e-4):
+        return "After refinement neither a quartile nor the least clearance shrinks as delta grows."
+    return "After refinement a quartile or the least clearance still shrinks at one of the steps."
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--scenes", type=int, default=50, help="number of random scenes")
+    add_problems_option(parser)
     parser.add_argument("--out", type=Path, default=RESULTS / "clearance_weight.md")
     given = parser.parse_args()
     begin = time.process_time()
     fp.plan(fp.load_scenario("fig2a"))  # compiles
-    seeds, rows = list(scenes(given.scenes)), []
+    rows, numbers = [], [case.number for case in cases(NUMBERS[: given.problems], 0.0)]
     for refine in (False, True):
-        before = None
+        before, groups = None, []
         for delta in DELTAS:
-            plans = [planned(seed, delta, refine) for seed in seeds]
+            plans = [planned(number, delta, refine) for number in numbers]
             rows.append(row(delta, refine, plans, before))
             before = plans
+            groups.append(plans)
             print(f"{rows[-1]} {time.process_time() - begin:.0f} s", file=sys.stderr)
     text = TEXT.format(
-        command=f"python -m benchmarks.studies.planners.clearance_weight --scenes {given.scenes}",
-        scenes=given.scenes,
-        first=FIRST_SEED,
+        command=f"python -m benchmarks.studies.planners.clearance_weight "
+        f"--problems {given.problems}",
+        count=len(numbers),
+        problems=given.problems,
         minutes=(time.process_time() - begin) / 60.0,
         results=table(HEADER, rows),
+        refined=monotone(groups),
     )
     publish(text, given.out)
 

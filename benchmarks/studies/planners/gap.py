@@ -1,9 +1,9 @@
 """Gap of the colonies to the exact lattice optimum, and an ablation of their parts.
 
-    python -m benchmarks.studies.planners.gap --scenes 60 --runs 5
+    python -m benchmarks.studies.planners.gap --problems 28 --runs 9
 
-runs the Ant System, the default colony and its ablations on random scenes
-(`benchmarks/random_scenes.py`) for four deltas, refinement off, and writes docs/benchmarks/gap.md.
+runs the Ant System, the default colony and its ablations on problems of family `paper` for four
+deltas, refinement off, and writes docs/benchmarks/gap.md.
 It takes about six minutes.
 """
 
@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, RESULTS, Case, cases, gap, publish, table
+from benchmarks.paper_scenes import NUMBERS, Case, add_problems_option, cases, gap
+from benchmarks.report_pages import RESULTS, publish, table
 
 DELTAS = (0.0, 0.1, 2.0, 6.0)
 ENOUGH = 1e-3  # a gap above this counts
@@ -68,19 +69,19 @@ def run(planner: fp.AntSystem | fp.MaxMinAntSystem, case: Case, seed: int) -> tu
     return gap(case, roadmap, found.path), seconds, near[0] + 1.0 if len(near) else np.inf
 
 
-def measure(scenes: int, runs: int, first_seed: int) -> tuple[dict[str, Runs], int]:
-    """All runs by planner, and how many scenes have a path."""
+def measure(problems: int, runs: int) -> tuple[dict[str, Runs], int]:
+    """All runs by planner, and how many problems have a path."""
     found: dict[str, list[tuple[float, ...]]] = {name: [] for name in PLANNERS}
     for delta in DELTAS:
         count = 0
-        for case in cases(range(first_seed, first_seed + scenes), delta):
+        for case in cases(NUMBERS[:problems], delta):
             if delta == DELTAS[0] and count == 0:
                 for planner in PLANNERS.values():  # compiled before the clock runs
                     run(planner, case, 0)
             count += 1
             for name, planner in PLANNERS.items():
                 found[name] += [run(planner, case, seed) for seed in range(runs)]
-        print(f"delta {delta:g}: {count} of {scenes} scenes have a path", flush=True)
+        print(f"delta {delta:g}: {count} of {problems} problems have a path", flush=True)
     return {name: Runs(*np.array(list_).T) for name, list_ in found.items()}, count
 
 
@@ -119,7 +120,7 @@ def reading(runs: dict[str, Runs]) -> str:
     return (
         f"**Ablation.** Runs more than {100.0 * ENOUGH:g} % above the optimum: "
         f"{100.0 * runs[FULL].above:.2f} % with all parts; {listed}. {verdict}.\n\n"
-        "**Contribution of the pheromone**, run by run on the same scene and seed. With local "
+        "**Contribution of the pheromone**, run by run on the same problem and seed. With local "
         f"search: {compare(runs[FULL], runs['without pheromone'])}. "
         f"Without local search: {compare(bare, neither)}; the median gap is "
         f"{100.0 * np.median(bare.gaps):.2f} % with pheromone, "
@@ -143,20 +144,20 @@ def compare(one: Runs, other: Runs) -> str:
 def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--scenes", type=int, default=60)
-    parser.add_argument("--runs", type=int, default=5, help="seeds for each scene and delta")
-    parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help="of the scenes")
+    add_problems_option(parser)
+    parser.add_argument("--runs", type=int, default=9, help="seeds for each problem and delta")
     parser.add_argument("--out", type=Path, default=RESULTS / "gap.md")
     args = parser.parse_args()
-    runs, count = measure(args.scenes, args.runs, args.first_seed)
+    runs, count = measure(args.problems, args.runs)
     header = ["planner", "runs", "median", "95th", "99th", "worst", "above 0.1 %", "failures"]
     header += ["cycles to 0.1 %", "95th", "ms"]
     publish(
         "# Gap to the exact lattice optimum\n\n"
-        f"    python -m benchmarks.studies.planners.gap --scenes {args.scenes} --runs {args.runs} "
-        f"--first-seed {args.first_seed}\n\n"
-        f"{count} random scenes that have a path ({args.scenes - count} more have none, or an end "
-        f"in collision), delta in {', '.join(f'{d:g}' for d in DELTAS)}, {args.runs} seeds each, "
+        f"    python -m benchmarks.studies.planners.gap --problems {args.problems} "
+        f"--runs {args.runs}\n\n"
+        f"{count} of {args.problems} problems of family `paper` of "
+        "[the problem set](../howto/problem_set.md), those that have a path on the lattice, "
+        f"delta in {', '.join(f'{d:g}' for d in DELTAS)}, {args.runs} seeds each, "
         "41 x 41 nodes, no refinement. Gaps and shares in percent; gaps are over the runs with a "
         "path, "
         "failures have their own column. The time is the median CPU time of the search with the "

@@ -1,9 +1,10 @@
-"""Comparison with OMPL's planners on random scenes: times, lengths, verified collisions.
+"""Comparison with OMPL's planners on the problem set: times, lengths, verified collisions.
 
     python -m benchmarks.studies.planners.ompl_peers
 
-needs `pip install ompl==2.0.1`. All planners work in one plane, (progress [m], lateral offset [m]),
-with the same whole-body configuration at every point and the same Coal query.
+needs `pip install ompl==2.0.1`. The problems are those of family `paper`. All planners work
+in one plane, (progress [m], lateral offset [m]), with the same whole-body configuration at every
+point and the same distances.
 """
 
 import argparse
@@ -19,12 +20,14 @@ import ompl.geometric as og
 import ompl.util as ou
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import NUMBERS, add_problems_option, paper_problem, problem_name
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.collision.distances import ObstacleQuery
+from ffsr_plan.collision.shape_placements import Placements, shape_placements
 from ffsr_plan.verification.urdf_reading import Bodies, pose
 from tests.helpers.solid_distances import sphere_distance
 
-FIRST_SEED = 2000
+SEED = 2000  # of OMPL's generator
 DEFAULT, FINE = 0.01, 0.002  # of the plane's diagonal between two validity checks
 OPTIMISING = ("RRTstar", "InformedRRTstar", "BITstar")
 OURS = "plan() (default)"
@@ -47,8 +50,10 @@ class Plane:
         # OMPL queries one point at a time; a table keeps the time spent in Python small
         self.cells = 20_000
         points = np.linspace(0.0, self.along, self.cells + 1)
-        self.table = self.configurations(np.column_stack([points, np.zeros_like(points)]))
-        self.rises = np.diff(self.table, axis=0, append=self.table[-1:])
+        table = self.configurations(np.column_stack([points, np.zeros_like(points)]))
+        self.frames = shape_placements(problem.robot, table).frames
+        self.rises = np.diff(self.frames, axis=0, append=self.frames[-1:])
+        self.place = np.zeros(1, np.int64)
 
     def configurations(self, points):
         """(N, nq) at points (N, 2) of the plane, attitude by reaction."""
@@ -60,12 +65,13 @@ class Plane:
         return q
 
     def valid(self, state):
-        """Whether a state of OMPL keeps clear of the obstacles, by Coal."""
+        """Whether a state of OMPL keeps clear of the obstacles."""
         scaled = state[0] / self.along * self.cells
         cell = int(scaled)
-        q = self.table[cell] + (scaled - cell) * self.rises[cell]
-        q[:3] += state[1] * self.aside
-        return self.query.distance(q) > 0.0
+        row = slice(cell, cell + 1)
+        placed = Placements(self.frames[row] + (scaled - cell) * self.rises[row])
+        shift = state[1] * self.aside[None]
+        return bool(self.query.closed_at(placed, self.place, shift)[0] > 0.0)
 
     def depth(self, path):
         """Deepest penetration [m] along corners (N, 2), every STEP in closed form; < 0 if free."""
@@ -95,10 +101,10 @@ class Plane:
 
 @dataclass
 class Run:
-    """The path of one planner for one scene after some time; None if it has no path.
+    """The path of one planner for one problem after some time; None if it has no path.
 
     Attributes:
-        seed: seed of the scene.
+        number: of the problem in family `paper`.
         planner: name of the planner.
         resolution: OMPL's edge resolution, relative to the plane's diagonal; None if proven.
         budget: time after which the planner was stopped [s], if it was.
@@ -107,7 +113,7 @@ class Run:
         depth: deepest penetration along the path [m].
     """
 
-    seed: int
+    number: int
     planner: str
     resolution: float | None
     budget: float | None
@@ -144,6 +150,16 @@ def ompl_setup(plane, planner, resolution):
     return setup
 
 
+def seconds_of_a_check(plane, count=5000):
+    """Processor time of a validity check [s]."""
+    limits = (0.0, -plane.window), (plane.along, plane.window)
+    states = np.random.default_rng(0).uniform(*limits, (count, 2))
+    begin = time.process_time()
+    for state in states:
+        plane.valid(state)
+    return (time.process_time() - begin) / count
+
+
 def solution(setup):
     if not setup.haveExactSolutionPath():
         return None
@@ -155,18 +171,18 @@ def until(moment):
     return ob.PlannerTerminationCondition(lambda: time.process_time() >= moment)
 
 
-def ompl_runs(plane, seed, seconds):
+def ompl_runs(plane, number, seconds):
     """RRTConnect, plain and simplified; then the optimising planners at several times."""
     for resolution in (DEFAULT, FINE):
         setup = ompl_setup(plane, "RRTConnect", resolution)
         begin = time.process_time()
         setup.solve(until(begin + seconds))
         spent, path = time.process_time() - begin, solution(setup)
-        yield Run(seed, "RRTConnect", resolution, None, spent, path)
+        yield Run(number, "RRTConnect", resolution, None, spent, path)
         if path is not None:
             setup.simplifySolution()
             spent, path = time.process_time() - begin, solution(setup)
-        yield Run(seed, "RRTConnect, simplified", resolution, None, spent, path)
+        yield Run(number, "RRTConnect, simplified", resolution, None, spent, path)
         for planner in OPTIMISING:
             setup, spent = ompl_setup(plane, planner, resolution), 0.0
             longest = seconds if resolution == FINE else min(seconds, 1.0)
@@ -174,10 +190,10 @@ def ompl_runs(plane, seed, seconds):
                 begin = time.process_time()
                 setup.solve(until(begin + budget - spent))
                 spent = spent + time.process_time() - begin
-                yield Run(seed, planner, resolution, budget, spent, solution(setup))
+                yield Run(number, planner, resolution, budget, spent, solution(setup))
 
 
-def our_runs(plane, seed):
+def our_runs(plane, number):
     """The lattice's optimum and the default ants, each with and without refinement."""
     for name, planner, refine in (
         ("LatticeOptimum, no refinement", fp.LatticeOptimum(), False),
@@ -187,7 +203,7 @@ def our_runs(plane, seed):
     ):
         begin = time.process_time()
         path = base_track(plane, planner, refine)
-        yield Run(seed, name, None, None, time.process_time() - begin, path)
+        yield Run(number, name, None, None, time.process_time() - begin, path)
 
 
 def base_track(plane, planner, refine):
@@ -208,14 +224,14 @@ HEAD = (
 
 def rows(runs):
     """One row for each planner, resolution and time."""
-    ours = {r.seed: r.length for r in runs if r.planner == OURS and r.path is not None}
+    ours = {r.number: r.length for r in runs if r.planner == OURS and r.path is not None}
     groups = {}
     for run in runs:
         groups.setdefault((run.planner, run.resolution, run.budget), []).append(run)
     for (planner, resolution, budget), group in groups.items():
         found = [r for r in group if r.path is not None]
         depths = [1e3 * r.depth for r in found if not r.clean]
-        ratio = np.array([r.length / ours[r.seed] for r in found if r.clean and r.seed in ours])
+        ratio = np.array([r.length / ours[r.number] for r in found if r.clean and r.number in ours])
         times = 1e3 * np.array([r.seconds for r in found] or [np.nan])
         yield [
             f"{planner}, {budget:g} s" if budget else planner,
@@ -229,22 +245,22 @@ def rows(runs):
 
 
 def sentences(runs):
-    """Scenes in which only one side has a path."""
-    ours, theirs = {r.seed: r for r in runs if r.planner == OURS}, {}
+    """Problems in which only one side has a path."""
+    ours, theirs = {r.number: r for r in runs if r.planner == OURS}, {}
     for run in sorted((r for r in runs if r.clean), key=lambda r: -r.length):
         if run.resolution == FINE:
-            theirs[run.seed] = run.path
+            theirs[run.number] = run.path
     refused = [r for r in ours.values() if r.path is None]
-    only = [r.seed for r in refused if r.seed in theirs]
-    turning = sum(bool(np.any(np.diff(theirs[seed][:, 0]) < -1e-9)) for seed in only)
+    only = [r.number for r in refused if r.number in theirs]
+    turning = sum(bool(np.any(np.diff(theirs[number][:, 0]) < -1e-9)) for number in only)
     finer = fp.Lattice(40, fp.Axis(80, 0.0375))
-    planes = [Plane(random_problem(seed, 0.0, finer)) for seed in only]
+    planes = [Plane(paper_problem(number, 0.0, finer)) for number in only]
     opened = sum(base_track(p, fp.LatticeOptimum(), False) is not None for p in planes)
-    lost = sum(r.path is not None and r.seed not in theirs for r in ours.values())
+    lost = sum(r.path is not None and r.number not in theirs for r in ours.values())
     spent = np.median([1e3 * r.seconds for r in refused] or [0.0])
     return f"""
 - OMPL has a free path (any planner at {FINE:g}, re-checked), `plan()` none: {len(only)} of
-  {len(ours)} scenes. OMPL's shortest path goes back in {turning} of them. With a four times
+  {len(ours)} problems. OMPL's shortest path goes back in {turning} of them. With a four times
   finer lateral spacing the lattice has a path in {opened} of them.
 - `plan()` has a path, OMPL no free one: {lost}. Neither has one: {len(refused) - len(only)}.
 - `plan()` found no path {len(refused)} times, after {spent:.0f} ms (median). OMPL's planners search
@@ -256,17 +272,18 @@ NOTES = f"""
 Notes:
 
 - All planners work in one plane: progress along the straight line [m] and lateral offset [m],
-  within the lattice's window; the same configuration at each point, reaction included, and the same
-  Coal query.
+  within the lattice's window; the same configuration at each point, reaction included. OMPL's
+  checks are distances in closed form, which agree with Coal's to rounding.
 - Lengths are those of the base's track in the plane. Our planners minimise Eq. 6, in which the
   joints' displacement is part of each step, and have corners on the layers only. The last two
-  columns count scenes where `plan()` has a path and this one is free of collisions; "shorter" and
+  columns count problems where `plan()` has a path and this one is free of collisions; "shorter" and
   "longer" begin at {100 * SAME:g} %.
 - Our paths are monotone in progress, one node in each layer. OMPL's paths may go back, and so
   there are OMPL paths, some of them shorter, that no such lattice contains.
 - Our times are those of `plan()` as a whole, proofs included. OMPL's are those of `solve` alone
-  (and of the simplification where named), with a validity checker in Python that reads the reaction
-  from a table; the time to make the table is not counted.
+  (and of the simplification where named), with a validity checker in Python that reads the
+  links' places from a table; the time to make the table is not counted. Times of OMPL's planners
+  are mostly times of these checks, and would be shorter with a checker in C++.
 - The edge resolution is OMPL's, relative to the plane's diagonal; {DEFAULT:g} is its default.
   Collisions are found by distances in closed form every {1e3 * STEP:g} mm, with the exact reaction.
 - OMPL's generator is seeded once; the results of its planners in a given time still vary.
@@ -275,33 +292,31 @@ Notes:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--scenes", type=int, default=30, help="number of random scenes")
+    add_problems_option(parser)
     parser.add_argument("--seconds", type=float, default=5.0, help="longest run of a planner")
     parser.add_argument("--out", type=Path, default=RESULTS / "ompl.md", help="report to write")
     given = parser.parse_args()
     begin = time.process_time()
     ou.setLogLevel(ou.LogLevel.LOG_ERROR)
-    ou.RNG.setSeed(FIRST_SEED)
+    ou.RNG.setSeed(SEED)
     for planner in (None, fp.LatticeOptimum()):
         fp.plan(fp.load_scenario("fig2a"), planner)  # compiles
-    runs, seed, done, skipped = [], FIRST_SEED, 0, 0
-    while done < given.scenes:
-        plane = Plane(random_problem(seed, 0.0))
-        try:
-            found = [*our_runs(plane, seed), *ompl_runs(plane, seed, given.seconds)]
-        except (fp.StartInCollision, fp.GoalInCollision):
-            found, skipped = [], skipped + 1
+    runs, spent = [], seconds_of_a_check(Plane(paper_problem(NUMBERS[0], 0.0)))
+    for number in NUMBERS[: given.problems]:
+        plane = Plane(paper_problem(number, 0.0))
+        found = [*our_runs(plane, number), *ompl_runs(plane, number, given.seconds)]
         for run in found:
             run.depth = -np.inf if run.path is None else plane.depth(run.path)
-        runs, done = runs + found, done + bool(found)
-        print(f"scene {seed}: {time.process_time() - begin:.0f} s", file=sys.stderr)
-        seed += 1
+        runs += found
+        print(f"{problem_name(number)}: {time.process_time() - begin:.0f} s", file=sys.stderr)
+    options = f"--problems {given.problems} --seconds {given.seconds:g}"
     introduction = f"""# Side by side with OMPL 2.0.1
 
-    python -m benchmarks.studies.planners.ompl_peers --scenes {done} --seconds {given.seconds:g}
+    python -m benchmarks.studies.planners.ompl_peers {options}
 
-{done} random scenes (`benchmarks/random_scenes.py`, seeds from {FIRST_SEED}, delta = 0; {skipped}
-left out: start or goal in collision). All times are processor times of one thread;
+{given.problems} problems of family `paper` of [the problem set](../howto/problem_set.md), with
+delta = 0. All times are processor times of one thread. One check of a state for OMPL takes
+{1e6 * spent:.0f} µs;
 {(time.process_time() - begin) / 60.0:.0f} minutes in all.
 
 """

@@ -15,7 +15,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, Case, publish, table
+from benchmarks.paper_scenes import Case
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.lattice.optimum import lattice_optimum
 
 DEFAULT = fp.AntSystem()

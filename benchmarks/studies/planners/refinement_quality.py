@@ -2,8 +2,9 @@
 
     python -m benchmarks.studies.planners.refinement_quality
 
-plans random scenes with default settings, compares F of the whole motion with the least one on
-finer lattices with the same number of divisions, and writes docs/benchmarks/refinement.md.
+plans problems of family `paper` with default settings, compares F of the whole motion with the
+least one on finer lattices with the same number of divisions, and writes
+docs/benchmarks/refinement.md.
 """
 
 import argparse
@@ -15,9 +16,15 @@ from pathlib import Path
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import LATTICE, RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import (
+    LATTICE,
+    NUMBERS,
+    add_problems_option,
+    paper_problem,
+    problem_name,
+)
+from benchmarks.report_pages import RESULTS, publish, table
 
-FIRST_SEED = 3000
 DELTAS = (0.0, 0.1, 2.0, 6.0)
 FINEST_DELTAS = (0.0, 6.0)
 TARGET = 1e-3
@@ -26,9 +33,9 @@ ROUNDING = 1e-12
 
 @dataclass
 class Case:
-    """One scene at one delta for which the default plan has a path."""
+    """One problem at one delta for which the default plan has a path."""
 
-    seed: int
+    number: int
     lattice_f: float
     refined_f: float
     rivals: dict[str, float]
@@ -47,24 +54,24 @@ def finer(times):
     return fp.Lattice(LATTICE.divisions, fp.Axis(axis.half_count * times, axis.spacing / times))
 
 
-def rival(seed, delta, times, refine):
+def rival(number, delta, times, refine):
     """F of the whole motion from the optimum on a finer lattice; infinite if it has no path."""
     try:
-        problem = random_problem(seed, delta, finer(times))
+        problem = paper_problem(number, delta, finer(times))
         return fp.plan(problem, fp.LatticeOptimum(), refine=refine).motion_objective
     except fp.NoPath:
         return np.inf
 
 
-def examine(seed, delta, finest):
+def examine(number, delta, finest):
     """A `Case`, or None if the default plan has no path; whether a finer lattice has a path."""
-    problem = random_problem(seed, delta)
+    problem = paper_problem(number, delta)
     rivals = {
-        "4 times finer": rival(seed, delta, 4, False),
-        "4 times finer, refined": rival(seed, delta, 4, True),
+        "4 times finer": rival(number, delta, 4, False),
+        "4 times finer, refined": rival(number, delta, 4, True),
     }
     if finest:
-        rivals["16 times finer, refined"] = rival(seed, delta, 16, True)
+        rivals["16 times finer, refined"] = rival(number, delta, 16, True)
     try:
         before, after = fp.plan(problem, refine=False), fp.plan(problem)
     except fp.NoPath:
@@ -74,7 +81,7 @@ def examine(seed, delta, finest):
     spent = 1e3 * (time.process_time() - begin)
     verified = after.verify(samples=100).ok
     return Case(
-        seed, before.motion_objective, after.motion_objective, rivals, spent, verified
+        number, before.motion_objective, after.motion_objective, rivals, spent, verified
     ), True
 
 
@@ -87,7 +94,7 @@ def row(delta, cases):
         f"{len(cases)}",
         f"{100 * np.median(excess):.4f}",
         f"{100 * np.quantile(excess, 0.9):.3f}",
-        f"{100 * worst.excess:.3f} (seed {worst.seed})" if worst.excess > 0.0 else "0",
+        f"{100 * worst.excess:.3f} ({problem_name(worst.number)})" if worst.excess > 0.0 else "0",
         f"{np.sum(excess <= TARGET)}",
         f"{100 * np.median(gain):.2f}",
         f"{np.median([c.milliseconds for c in cases]):.0f}",
@@ -110,10 +117,11 @@ HEADER = (
 )
 TEXT = """# How close refinement comes
 
-`{command}`: {scenes} random scenes
-(`benchmarks/random_scenes.py`, seeds from {first}) for each delta, default plan on the lattice of
-{divisions} divisions and {nodes} nodes a layer. Times are processor times; {minutes:.1f} minutes in
-all.
+`{command}`
+
+{problems} problems of family `paper` of [the problem set](../howto/problem_set.md), each with every
+delta: default plan on the lattice of {divisions} divisions and {nodes} nodes a layer. Times are
+processor times; {minutes:.1f} minutes in all.
 
 {results}
 
@@ -122,7 +130,7 @@ all.
 - F is that of the whole motion, `plan.motion_objective`, which refinement lowers.
 - The best known F is the least of the default plan and of the plan from the optimum of a lattice
   with four times finer lateral spacing, refined or not, and, for delta = {finest} in the
-  first {subset} scenes, of a refined one of a 16 times finer lattice. Layers and window are the
+  first {subset} problems, of a refined one of a 16 times finer lattice. Layers and window are the
   same, so that F is.
 - "F rose" counts plans whose F is higher than that of their path on the lattice; "verified" those
   that pass `plan.verify(samples=100)`. The time is that of `fp.refine` alone; within `plan()`,
@@ -138,8 +146,8 @@ def below(differences):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--scenes", type=int, default=30, help="number of random scenes")
-    parser.add_argument("--finest", type=int, default=30, help="scenes with a 16 times finer rival")
+    add_problems_option(parser)
+    parser.add_argument("--finest", type=int, default=28, help="those with a 16 times finer rival")
     parser.add_argument("--out", type=Path, default=RESULTS / "refinement.md", help="the report")
     given = parser.parse_args()
     begin = time.process_time()
@@ -147,9 +155,9 @@ def main():
         fp.plan(fp.load_scenario("fig2a"), planner)  # compiles
     cases, opened = {delta: [] for delta in DELTAS}, []
     for delta in DELTAS:
-        for k in range(given.scenes):
+        for k, number in enumerate(NUMBERS[: given.problems]):
             finest = delta in FINEST_DELTAS and k < given.finest
-            case, exists = examine(FIRST_SEED + k, delta, finest)
+            case, exists = examine(number, delta, finest)
             cases[delta] += [case] if case else []
             opened += [] if case else [exists]
         print(f"delta = {delta:g}: {time.process_time() - begin:.0f} s", file=sys.stderr)
@@ -164,19 +172,18 @@ def main():
     ]
     names = ["rival, all deltas", "plans", "F against ours, median [%]", "lower", "higher"]
     text = TEXT.format(
-        command=f"python -m benchmarks.studies.planners.refinement_quality --scenes {given.scenes} "
-        f"--finest {given.finest}",
-        scenes=given.scenes,
-        first=FIRST_SEED,
+        command=f"python -m benchmarks.studies.planners.refinement_quality "
+        f"--problems {given.problems} --finest {given.finest}",
+        problems=given.problems,
         divisions=LATTICE.divisions,
         nodes=2 * LATTICE.lateral.half_count + 1,
         minutes=(time.process_time() - begin) / 60.0,
         results=table(HEADER, [row(d, group) for d, group in cases.items() if group]),
         rivals=table(names, against),
         finest=" and ".join(f"{d:g}" for d in FINEST_DELTAS),
-        subset=min(given.finest, given.scenes),
+        subset=min(given.finest, given.problems),
         missing=len(opened),
-        all=len(DELTAS) * given.scenes,
+        all=len(DELTAS) * given.problems,
         opened=sum(opened),
     )
     publish(text, given.out)

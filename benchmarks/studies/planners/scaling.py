@@ -2,8 +2,8 @@
 
     python -m benchmarks.studies.planners.scaling
 
-varies one of them at a time around 30 ants x 242 cycles on 41 x 41 nodes, over random scenes
-(`benchmarks/random_scenes.py`, delta = 2), fits exponents, and writes docs/benchmarks/scaling.md
+varies one of them at a time around 30 ants x 242 cycles on 41 x 41 nodes, over problems
+of family `paper` with delta = 2, fits exponents, and writes docs/benchmarks/scaling.md
 and scaling.png. It takes about two minutes.
 
 With its default settings the Ant System stops early by stagnation, and no exponent could be fitted.
@@ -12,6 +12,7 @@ Here rho = 0.999999 and Q = 1e-9: the pheromone stays uniform and all cycles run
 
 import argparse
 import time
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,7 +20,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, RESULTS, cases, publish, random_problem, table
+from benchmarks.paper_scenes import NUMBERS, cases, paper_problem, problem_name
+from benchmarks.report_pages import RESULTS, publish, table
 
 DELTA = 2.0
 DEFAULTS = {"ants": 30, "cycles": 242, "divisions": 40, "nodes": 41}
@@ -75,16 +77,16 @@ def lattice(divisions: int, nodes: int) -> fp.Lattice:
 
 
 def measure(
-    seeds: list[int], repeats: int, ants: int, cycles: int, divisions: int, nodes: int
+    numbers: list[int], repeats: int, ants: int, cycles: int, divisions: int, nodes: int
 ) -> dict[tuple[str, str], float]:
-    """Mean over the scenes of the least CPU time [s], by planner and kind of time.
+    """Mean over the problems of the least CPU time [s], by planner and kind of time.
 
     Every search gets a new roadmap; a copy without edge states would keep the prover's bounds.
     """
-    problems = [random_problem(seed, DELTA, lattice(divisions, nodes)) for seed in seeds]
+    problems = [paper_problem(n, DELTA, lattice(divisions, nodes)) for n in numbers]
     seconds = {}
     for name, planner in planners(ants, cycles).items():
-        least = np.full((2, len(seeds)), np.inf)
+        least = np.full((2, len(numbers)), np.inf)
         for k, problem in enumerate(problems):
             for repeat in range(repeats):
                 fresh, rng = fp.Roadmap(problem), np.random.default_rng(repeat)
@@ -145,19 +147,18 @@ def reading(laws: list[Law]) -> str:
 def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--scenes", type=int, default=3)
+    parser.add_argument("--problems", type=int, default=2, help="of which the mean is taken")
     parser.add_argument("--repeats", type=int, default=1, help="of which the least time counts")
     parser.add_argument("--out", type=Path, default=RESULTS, help="directory")
     args = parser.parse_args()
-    # scenes with a path on the coarsest lattices have one on all that are measured here
-    seeds = []
-    for seed in range(FIRST_SEED, FIRST_SEED + 100):
-        if all(list(cases([seed], DELTA, lattice(*size))) for size in ((20, 41), (40, 21))):
-            seeds = [*seeds, seed][: args.scenes]
-    measure(seeds[:1], 1, **DEFAULTS)  # compiled before the clock runs
+    # problems with a path on the coarsest lattices have one on all that are measured here
+    coarsest = lattice(20, 41), lattice(40, 21)
+    fit = (n for n in NUMBERS if all(list(cases([n], DELTA, each)) for each in coarsest))
+    numbers = list(islice(fit, args.problems))
+    measure(numbers[:1], 1, **DEFAULTS)  # compiled before the clock runs
     laws, rows = [], []
     for size, values in VALUES.items():
-        found = [measure(seeds, args.repeats, **DEFAULTS | {size: value}) for value in values]
+        found = [measure(numbers, args.repeats, **DEFAULTS | {size: value}) for value in values]
         for name, kind in found[0]:
             law = Law(name, size, kind, [times[name, kind] for times in found])
             laws.append(law)
@@ -171,10 +172,12 @@ def main() -> None:
     header = ["planner, time", "size", "from", "first ms", "last ms", "exponent", "last two"]
     publish(
         "# Scaling\n\n"
-        f"    python -m benchmarks.studies.planners.scaling --scenes {args.scenes} "
+        f"    python -m benchmarks.studies.planners.scaling --problems {args.problems} "
         f"--repeats {args.repeats}\n\n"
         f"One size at a time around {DEFAULTS}, the lateral window always {WIDTH:g} m wide; CPU "
-        f"time, mean over random scenes {seeds}, delta = {DELTA:g}. 'search' leaves out the "
+        f"time, mean over "
+        f"{', '.join(map(problem_name, numbers))} of [the problem set](../howto/problem_set.md), "
+        f"delta = {DELTA:g}. 'search' leaves out the "
         "roadmap and the clearances of all its nodes, 'plan' is the whole of `plan(refine=False)`, "
         "exact optimum included; the last column is the exponent between the two largest sizes. "
         "The Ant System runs with rho = 0.999999 and Q = 1e-9, so that pheromone stays flat and "

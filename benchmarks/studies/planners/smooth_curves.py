@@ -2,7 +2,7 @@
 
     python -m benchmarks.studies.planners.smooth_curves
 
-plans on the random scenes with several weights of the clearance, on all bundled scenarios and on
+plans problems of family `paper` with several weights of the clearance, all bundled scenarios and
 the problems without a lattice of `benchmarks/studies/general/problems.json`, smooths the plans and
 writes docs/benchmarks/smooth_curves.md. It takes about ten minutes.
 """
@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import NUMBERS, paper_problem
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.general.free_space import NAMES, problems
 from ffsr_plan.core.bundled_files import names
 from ffsr_plan.curves.control_points import control_points_on
@@ -112,8 +113,8 @@ def groups(count: int, seconds: float) -> Iterator[tuple[str, Iterator[fp.Plan]]
     """Names and plans of all rows."""
     optimum = fp.LatticeOptimum()
     for delta in DELTAS:
-        scenes = (random_problem(seed, delta) for seed in range(FIRST_SEED, FIRST_SEED + 34))
-        yield f"random scenes, delta {delta:g}", plans_of(scenes, lambda p: fp.plan(p, optimum))
+        scenes = (paper_problem(number, delta) for number in NUMBERS)
+        yield f"family `paper`, delta {delta:g}", plans_of(scenes, lambda p: fp.plan(p, optimum))
     bundled = (fp.load_scenario(name) for name in names("scenarios", ".toml"))
     yield "bundled scenarios", plans_of(bundled, lambda p: fp.plan(p))
     for kind, name in NAMES.items():
@@ -147,8 +148,9 @@ def main() -> None:
         f"`python -m benchmarks.studies.planners.smooth_curves --count {args.count} --seconds "
         f"{args.seconds:g}`",
         "",
-        "`plan.smooth()` on refined optima of the random scenes, on the bundled scenarios, and",
-        "on the problems without a lattice of [Without a lattice](free_space.md): first paths, and",
+        "`plan.smooth()` on refined optima of the 28 problems of family `paper` of",
+        "[the problem set](../howto/problem_set.md), on the bundled scenarios, and on the",
+        "problems without a lattice of [Without a lattice](free_space.md): first paths, and",
         f"plans after {args.seconds:g} s. L and F are compared with the plan's; times are",
         "processor time for curve, proof and figures. The last column has the spline through the",
         "nodes, proven or not, against the curve that was taken: how much its direction turns in",

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.core import bundled_files
 
 LIMITS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)

@@ -13,7 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import LATTICE, RESULTS, publish, table
+from benchmarks.paper_scenes import LATTICE
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.shape_placements import shape_placements
 from ffsr_plan.scene.generators import cloud

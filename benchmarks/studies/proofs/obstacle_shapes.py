@@ -16,7 +16,7 @@ import coal
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.collision.distances import ObstacleQuery
 from ffsr_plan.collision.nearest_obstacle_kernels import distance_to_solid
 from ffsr_plan.robots.collision_shapes import sharpen

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, LATTICE, RESULTS, publish, random_problem, table
+from benchmarks.paper_scenes import LATTICE, NUMBERS, add_problems_option, paper_problem
+from benchmarks.report_pages import RESULTS, publish, table
 from benchmarks.studies.proofs.travel_bound import simple_speeds
 from ffsr_plan.dynamics.motion import Motion
 from ffsr_plan.proof.interval_halving import Verdict, certify
@@ -108,14 +109,11 @@ def certified(task: Task) -> dict[str, list[Verdict]]:
     return verdicts
 
 
-def tasks(scenes: int, edges: int) -> Iterator[tuple[str, Task]]:
+def tasks(problems: int, edges: int) -> Iterator[tuple[str, Task]]:
     """All edges to be certified, by group."""
-    for seed in range(FIRST_SEED, FIRST_SEED + scenes):
-        try:
-            problem = random_problem(seed, 0.0)
-            yield "lattice, 4 to 11 spheres", lattice_edges(problem, edges, seed)
-        except (fp.StartInCollision, fp.GoalInCollision):
-            continue
+    for number in NUMBERS[:problems]:
+        problem = paper_problem(number, 0.0)
+        yield "family `paper`, 4 to 11 spheres", lattice_edges(problem, edges, number)
     yield "lattice, 2 000 spheres", lattice_edges(fp.load_scenario("debris"), edges, 0)
     for seed in range(edges):
         yield "arm swings, 6 spheres", arm_swing(seed)
@@ -124,12 +122,12 @@ def tasks(scenes: int, edges: int) -> Iterator[tuple[str, Task]]:
 def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--edges", type=int, default=2000, help="in each scene, and arm swings")
-    parser.add_argument("--scenes", type=int, default=20)
+    parser.add_argument("--edges", type=int, default=2000, help="in each problem, and arm swings")
+    add_problems_option(parser)
     parser.add_argument("--out", type=Path, default=RESULTS / "certification.md")
     args = parser.parse_args()
     totals: dict[tuple[str, str], list[Verdict]] = {}
-    for group, task in tasks(args.scenes, args.edges):
+    for group, task in tasks(args.problems, args.edges):
         for name, verdicts in certified(task).items():
             totals.setdefault((group, name), []).extend(verdicts)
     rows = []
@@ -147,8 +145,9 @@ def main() -> None:
     ]  # fmt: skip
     publish(
         "# Queries of a proof\n\n`python -m benchmarks.studies.proofs.proof_queries "
-        f"--edges {args.edges} --scenes {args.scenes}`\n\nEdges of lattices between neighbouring "
-        "offsets, and arms that "
+        f"--edges {args.edges} --problems {args.problems}`\n\nEdges of lattices between "
+        f"neighbouring offsets, in {args.problems} problems of family `paper` of\n[the problem set]"
+        "(../howto/problem_set.md) and past 2 000 spheres, and arms that "
         "swing by half a radian a joint while the\nbase reacts; both ends free. A query is Coal's "
         "distance between the ends of an edge, over all pairs.\nOn these lattices the base moves "
         "far more than the arms, so that all bounds are similar there.\n\n"

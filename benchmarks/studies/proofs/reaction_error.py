@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import ffsr_plan as fp
-from benchmarks.random_scenes import FIRST_SEED, RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from ffsr_plan.core import rotations
 from ffsr_plan.dynamics.reaction import Reaction
 from tests.helpers.random_robots import random_tree
@@ -47,7 +47,7 @@ def main() -> None:
     """Integrate, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--segments", type=int, default=1_000_000, help="at each tolerance")
-    parser.add_argument("--first-seed", type=int, default=FIRST_SEED, help="of the robots")
+    parser.add_argument("--first-seed", type=int, default=1000, help="of the robots")
     parser.add_argument("--out", type=Path, default=RESULTS / "reaction_error.md")
     args = parser.parse_args()
     shares: dict[float, list[np.ndarray]] = {tolerance: [] for tolerance in TOLERANCES}

@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: one thread each
-from benchmarks.random_scenes import RESULTS, publish, table
+from benchmarks.report_pages import RESULTS, publish, table
 from tests.helpers.grazing_shapes import ZONES, Counts, look_at
 from tests.helpers.obstacle_shapes import KINDS
 
