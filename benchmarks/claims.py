@@ -187,7 +187,7 @@ CLAIMS = [
         {
             "solved": Cell("problem_set", "all", "solved in time"),
             "problems": Cell("problem_set", "all", "solved in time", part=1),
-            "theirs": Cell("problem_set", "all", "ompl-rrtconnect-at-rest, in time"),
+            "theirs": Cell("problem_set", "all", "B in time"),
             "tried": Cell("problem_set", "all", "tasks"),
         },
     ),

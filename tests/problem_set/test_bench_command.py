@@ -1,14 +1,17 @@
 """`ffsr-plan bench`: a run, its results, comparisons and the page."""
 
+import io
 import json
 import shutil
 
 import numpy as np
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 import ffsr_plan as fp
 from ffsr_plan.cli import app
+from ffsr_plan.cli.bench.tables import printed as printed_table
 from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
 from ffsr_plan.problem_set.judging.result_files import (
     Judged,
@@ -22,7 +25,7 @@ from ffsr_plan.problem_set.report.profiles import (
     performance_profile,
     success_over_time,
 )
-from ffsr_plan.problem_set.report.summary import compared, in_time
+from ffsr_plan.problem_set.report.summary import compared, family_table, in_common, in_time
 from ffsr_plan.problem_set.running.bench_run import planner_named
 from tests.problem_set.conftest import SMALL
 
@@ -106,6 +109,26 @@ def test_lists_and_schemas_are_printed():
 def test_bad_input_has_status_2(wrong, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert bench(*wrong).exit_code == 2
+
+
+def test_tables_of_many_columns_fit_a_terminal_of_80(small_run, problems, best):
+    judged, shown = read_judged(small_run[0]), Console(width=80, record=True, file=io.StringIO())
+    for table in (family_table(judged, problems, best), compared(judged, judged, problems)):
+        shown.print(printed_table(table))
+        text = shown.export_text()
+        assert all(word in text for heading in table.headings for word in heading.split())
+        assert all(cell in text for cells in table.rows for cell in cells)
+
+
+def test_pictures_are_of_the_tasks_that_all_planners_have():
+    first = Judged("one", "1", (row("traps/00"), row("traps/01")))
+    second = Judged("other", "1", (row("traps/01"),))
+    assert [[each.problem for each in made.rows] for made in in_common([first, second])] == [
+        ["traps/01"],
+        ["traps/01"],
+    ]
+    third = Judged("third", "1", (row("traps/02"),))
+    assert in_common([first, third]) == [first, third]
 
 
 def test_results_of_another_planner_are_not_replaced(small_run, tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import textwrap
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -16,7 +17,7 @@ from ffsr_plan.problem_set.best_plans import BestPlans
 from ffsr_plan.problem_set.judging.judged_folder import judge_folder
 from ffsr_plan.problem_set.judging.result_files import Judged, JudgedRow, read_judged
 from ffsr_plan.problem_set.report.bench_page import write_page
-from ffsr_plan.problem_set.report.summary import compared, family_table, reasons
+from ffsr_plan.problem_set.report.summary import compared, family_table, reasons, was_judged
 from ffsr_plan.problem_set.running.bench_run import run
 from ffsr_plan.problem_set.set_index import ProblemSet
 from ffsr_plan.studies.report.tables import Table
@@ -158,7 +159,7 @@ def _rows(rows: Sequence[JudgedRow]) -> Table:
     cells = tuple(
         (
             row.problem,
-            "accepted" if row.accepted else f"refused: {row.reason[:120]}",
+            _verdict(row),
             f"{row.seed}",
             *("" if v is None else f"{v:.4f}" for v in
               (row.length, row.objective, row.delta_v, row.clearance)),
@@ -167,6 +168,13 @@ def _rows(rows: Sequence[JudgedRow]) -> Table:
         for row in rows
     )  # fmt: skip
     return Table("By problem", headings, cells, 2)
+
+
+def _verdict(row: JudgedRow) -> str:
+    if row.accepted:
+        return "accepted"
+    word = "refused" if was_judged(row) else "no path"
+    return f"{word}: {textwrap.shorten(row.reason, 120, placeholder=' ...')}"
 
 
 def _tables(tables: Sequence[Table], sentences: Sequence[str], output: Output) -> None:

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
+_MANY = 8  # columns that are set with more room than they need
+
+
 def printed(table: Table) -> RenderableType:
     """A table for the terminal, in which titles are wrapped before names and numbers are cut.
 
@@ -22,21 +25,29 @@ def printed(table: Table) -> RenderableType:
     """
     from rich.box import SIMPLE_HEAD
     from rich.table import Table as Printed
+    from rich.text import Text
 
+    many = len(table.headings) > _MANY
     made = Printed(
         title=table.title,
         title_justify="left",
         box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
+        padding=(0, 0 if many else 1, 0, 0),
         pad_edge=False,
+        show_edge=False,
     )
     for k, heading in enumerate(table.headings):
         side: Any = "left" if k < table.texts else "right"
         widest = max((len(cells[k]) for cells in table.rows), default=0)
-        least = widest if k == 0 or k >= table.texts else None  # headings and titles are wrapped
-        made.add_column(heading, justify=side, overflow="fold", min_width=least)
+        least = max(map(len, heading.split()), default=0)
+        if k == 0 or k >= table.texts:  # headings and titles are wrapped, between words
+            least = max(least, widest)
+        most = least if many and k >= table.texts else None
+        made.add_column(
+            Text(heading), justify=side, overflow="fold", min_width=least, max_width=most
+        )
     for cells in table.rows:
-        made.add_row(*cells)
+        made.add_row(*map(Text, cells))
     return made
 
 

@@ -10,7 +10,7 @@ from ffsr_plan.core.text_files import write_text
 from ffsr_plan.problem_set.best_plans import BestPlans
 from ffsr_plan.problem_set.judging.result_files import Judged
 from ffsr_plan.problem_set.report.figures import bench_figures
-from ffsr_plan.problem_set.report.summary import compared, family_table, reasons
+from ffsr_plan.problem_set.report.summary import compared, family_table, in_common, reasons
 from ffsr_plan.problem_set.set_index import ProblemSet
 from ffsr_plan.studies.report.page import page
 
@@ -34,13 +34,17 @@ def write_page(path: Path, judged: Sequence[Judged], problems: ProblemSet) -> No
     tables += [compared(named[0], other, problems) for other in named[1:]]
     if any(not row.accepted for each in named for row in each.rows):
         tables.append(reasons(named))
-    figures = bench_figures(named, problems.families, best)
+    shared = in_common(named)
+    figures = bench_figures(shared, problems.families, best)
     known = sum(row.objective is not None for name in problems.names() if (row := best.get(name)))
     sentences = [
         f"Problem set {problems.version}: {len(problems)} problems in {len(problems.families)} "
         f"families, {known} of them with a known plan. Every trajectory is judged by certify.",
         "Success and cost over time: until the first path that is proven free, and F of the best "
         "one by then; tasks without a path count as infinite. Profiles: Dolan and More (2002).",
+        "Pictures are of the tasks that all planners have: "
+        + ", ".join(f"{len(each.rows)} of {each.planner}" for each in shared)
+        + ". A task is a problem with a seed.",
         "F is that of the whole motion at 40 pieces of equal length, the same for every planner.",
     ]
     write_text("page", path, page("ffsr-plan bench", sentences, tables, figures))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from statistics import median
 
@@ -94,8 +95,7 @@ def family_table(judged: Judged, problems: ProblemSet, best: BestPlans) -> Table
     """
     headings = (
         "family", "limit [s]", "solved in time", "solved", "refused", "no path",
-        "first path, median [s]", "F to best known, median", "F above bound, median",
-        "clearance, median [m]",
+        "first path [s]", "F / best", "F above bound", "clear [m]",
     )  # fmt: skip
     groups: dict[str, list[JudgedRow]] = {}
     for row in judged.rows:
@@ -104,13 +104,13 @@ def family_table(judged: Judged, problems: ProblemSet, best: BestPlans) -> Table
     rows = [_family(name, groups[name], best) for name in order]
     if len(order) > 1:
         rows.append(_family("all", list(judged.rows), best))
-    return Table(f"{judged.planner}, by family", headings, tuple(rows), 1)
+    return Table(f"{judged.planner}, by family; medians", headings, tuple(rows), 1)
 
 
 def _family(name: str, rows: Sequence[JudgedRow], best: BestPlans) -> tuple[str, ...]:
     accepted = [row for row in rows if row.accepted]
     missed = [row for row in rows if not row.accepted]
-    refused = sum(row.seconds > 0.0 and _was_judged(row) for row in missed)
+    refused = sum(map(was_judged, missed))
     limits = sorted({row.time_limit for row in rows})
     return (
         name,
@@ -126,8 +126,14 @@ def _family(name: str, rows: Sequence[JudgedRow], best: BestPlans) -> tuple[str,
     )
 
 
-def _was_judged(row: JudgedRow) -> bool:
-    """Whether there was a trajectory, which was refused, and not an error of the planner."""
+def was_judged(row: JudgedRow) -> bool:
+    """Whether there was a trajectory, and not an error of the planner.
+
+    Args:
+        row: a judged row.
+    """
+    if row.accepted:
+        return True
     return not row.reason.partition(":")[0].isidentifier() and row.reason != "no trajectory"
 
 
@@ -152,15 +158,15 @@ def compared(first: Judged, second: Judged, problems: ProblemSet) -> Table:
     a, b = first.planner, second.planner
     a, b = (a, b) if a != b else (f"{a} (A)", f"{b} (B)")
     headings = (
-        "family", "tasks", f"{a}, in time", f"{b}, in time", f"only {a}", f"only {b}",
-        "F of B / A, median", "F lower: A, B", "first path B / A, median",
+        "family", "tasks", "A in time", "B in time", "only A", "only B", "F of B / A",
+        "F lower: A, B", "first path B / A",
     )  # fmt: skip
     rows = []
     for family in [*problems.families, "all"]:
         keys = [key for key in common if family in (one[key].family, "all")]
         if keys:
             rows.append(_compared(family, [(one[key], other[key]) for key in keys]))
-    return Table(f"A: {a}; B: {b}", headings, tuple(rows), 1)
+    return Table(f"A: {a}; B: {b}; medians of ratios", headings, tuple(rows), 1)
 
 
 def _compared(family: str, pairs: Sequence[tuple[JudgedRow, JudgedRow]]) -> tuple[str, ...]:
@@ -199,7 +205,8 @@ def reasons(judged: Sequence[Judged], most: int = 12) -> Table:
                 counts[each.planner, kind] = count + 1, example
     ordered = sorted(counts.items(), key=lambda item: -item[1][0])[:most]
     rows = [
-        (planner, kind, example[:160], f"{count}") for (planner, kind), (count, example) in ordered
+        (planner, kind, textwrap.shorten(example, 160, placeholder=" ..."), f"{count}")
+        for (planner, kind), (count, example) in ordered
     ]
     return Table("Not solved", ("planner", "why", "example", "tasks"), tuple(rows), 3)
 
@@ -209,12 +216,31 @@ def _kind(reason: str) -> str:
     for start in ("in contact", "not proven", "joints", "base origin", "base attitude", "the base"):
         if reason.startswith(start):
             return start
-    return reason.partition(":")[0][:40]
+    return textwrap.shorten(reason.partition(":")[0], 40, placeholder=" ...")
 
 
 def _number(values: Iterable[float], form: str) -> str:
     found = list(values)
     return format(median(found), form) if found else ""
+
+
+def in_common(judged: Sequence[Judged]) -> list[Judged]:
+    """The rows of the tasks that all planners have; all rows where there is no such task.
+
+    Args:
+        judged: rows of planners.
+    """
+    common = set.intersection(*(set(by_key(each)) for each in judged)) if judged else set()
+    if not common:
+        return list(judged)
+    return [
+        Judged(
+            each.planner,
+            each.set_version,
+            tuple(row for row in each.rows if (row.problem, row.seed) in common),
+        )
+        for each in judged
+    ]
 
 
 def families_of(judged: Sequence[Judged], titles: Mapping[str, str]) -> list[str]:
