@@ -18,7 +18,7 @@ def warm_up_and_report() -> None:
     if not can_be_kept():
         raise InvalidInput("NUMBA_CACHE_DIR", str(folder()), "a directory that can be written")
     announcement.withhold()
-    err_console.print("warming up: compiling what is not compiled yet, up to a minute or two")
+    err_console.print("warming up: compiling what is not compiled yet, which takes some minutes")
     watch = Stopwatch()
     from ffsr_plan.planning.warm_up import warm_up
 

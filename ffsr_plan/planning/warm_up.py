@@ -36,9 +36,9 @@ _MANY = 20_001  # spheres whose tree a kernel builds
 def warm_up(on_progress: Callable[[float], object] | None = None) -> int:
     """Compile the kernels of planners, verification and flights, and keep the machine code.
 
-    Otherwise each kernel is compiled when it is first called. That takes the better part of a
-    minute in all, once after an installation; an image of a container holds the machine code after
-    this call. Where all is compiled, it is loaded, which takes a few seconds.
+    Otherwise each kernel is compiled when it is first called. That takes some minutes in all, once
+    after an installation; an image of a container holds the machine code after this call. Where all
+    is compiled, it is loaded, which takes some seconds.
 
     Args:
         on_progress: called with the share that is done, from 0 to 1.

@@ -14,9 +14,9 @@ from ffsr_plan.core.kernels.compiling_time import count_begin, count_end, is_own
 from ffsr_plan.core.kernels.kernel_cache import keep_on_disk
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
-_NOTICE = "compiling numerical kernels, once after an installation (some thirty seconds)"
+_NOTICE = "compiling numerical kernels, once after an installation (a minute or two)"
 _NOT_KEPT = (
-    "compiling numerical kernels (some thirty seconds), at every start: the cache directory "
+    "compiling numerical kernels (a minute or two), at every start: the cache directory "
     "cannot be written; NUMBA_CACHE_DIR can name another one"
 )
 _installing, _listening = Lock(), False
