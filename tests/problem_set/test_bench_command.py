@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import ffsr_plan as fp
 from ffsr_plan.cli import app
-from ffsr_plan.cli.bench.tables import printed as printed_table
+from ffsr_plan.cli.console.report_tables import printed as printed_table
 from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
 from ffsr_plan.problem_set.judging.result_files import (
     Judged,

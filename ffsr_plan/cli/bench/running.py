@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ffsr_plan.cli.bench.tables import as_data, printed
 from ffsr_plan.cli.console.output import Output
+from ffsr_plan.cli.console.report_tables import as_data, printed
 from ffsr_plan.cli.console.terminal import INTERRUPTED, err_console
 from ffsr_plan.core.checks import path as checked_path
 from ffsr_plan.core.checks import whole_number

@@ -3,62 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ffsr_plan.cli.console.output import Output
+from ffsr_plan.cli.console.report_tables import as_data, printed
 from ffsr_plan.problem_set.best_plans import BestPlans
 from ffsr_plan.problem_set.set_index import ProblemSet
 from ffsr_plan.studies.report.tables import Table
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
-
-
-_MANY = 8  # columns that are set with more room than they need
-
-
-def printed(table: Table) -> RenderableType:
-    """A table for the terminal, in which titles are wrapped before names and numbers are cut.
-
-    Args:
-        table: the table.
-    """
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table as Printed
-    from rich.text import Text
-
-    many = len(table.headings) > _MANY
-    made = Printed(
-        title=table.title,
-        title_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 0 if many else 1, 0, 0),
-        pad_edge=False,
-        show_edge=False,
-    )
-    for k, heading in enumerate(table.headings):
-        side: Any = "left" if k < table.texts else "right"
-        widest = max((len(cells[k]) for cells in table.rows), default=0)
-        least = max(map(len, heading.split()), default=0)
-        if k == 0 or k >= table.texts:  # headings and titles are wrapped, between words
-            least = max(least, widest)
-        most = least if many and k >= table.texts else None
-        made.add_column(
-            Text(heading), justify=side, overflow="fold", min_width=least, max_width=most
-        )
-    for cells in table.rows:
-        made.add_row(*map(Text, cells))
-    return made
-
-
-def as_data(table: Table) -> dict[str, Any]:
-    """A table as JSON has it.
-
-    Args:
-        table: the table.
-    """
-    rows = [dict(zip(table.headings, cells, strict=True)) for cells in table.rows]
-    return {"title": table.title, "rows": rows}
 
 
 def list_problems(family: Sequence[str] | None, output: Output) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ffsr_plan.cli.console.output import Output
+from ffsr_plan.cli.console.report_tables import as_data, printed
 from ffsr_plan.cli.console.terminal import INTERRUPTED, err_console
 from ffsr_plan.studies.study import Study
 from ffsr_plan.studies.study_result import StudyResult
@@ -16,7 +17,6 @@ from ffsr_plan.studies.study_result import StudyResult
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from ffsr_plan.studies.report.tables import Table
 
 _LEFT_OUT = ("plans", "length [m]", "95 % of times [s]", "example")
 
@@ -103,7 +103,7 @@ def _show(result: StudyResult, files: Sequence[Path], output: Output) -> None:
     tables = study_tables(rows, result.axes) if rows else []
 
     def readable() -> Iterator[RenderableType]:
-        yield from map(_printed, tables)
+        yield from (printed(table, _LEFT_OUT) for table in tables)
         yield from sentences(rows)
         if files:
             yield f"Written: {', '.join(map(str, files))}"
@@ -112,10 +112,6 @@ def _show(result: StudyResult, files: Sequence[Path], output: Output) -> None:
             yield f"Rows are in {result.database}; {drawn}."
 
     def data() -> dict[str, Any]:
-        shown = [
-            {"title": title, "rows": [dict(zip(headings, cells, strict=True)) for cells in body]}
-            for title, headings, body, _ in tables
-        ]
         return {
             "study": {
                 "directory": str(result.directory),
@@ -124,30 +120,8 @@ def _show(result: StudyResult, files: Sequence[Path], output: Output) -> None:
                 "faults": result.faults,
                 "digest": result.digest(),
             },
-            "tables": shown,
+            "tables": [as_data(table) for table in tables],
             "files": [str(path) for path in files],
         }
 
     output.show(readable, data)
-
-
-def _printed(table: Table) -> RenderableType:
-    """A table for a terminal of 80 columns; the page has the columns that are left out."""
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table as Printed
-
-    made = Printed(
-        title=table.title,
-        title_justify="left",
-        box=SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-        pad_edge=False,
-    )
-    left_out = [k for k, name in enumerate(table.headings) if name in _LEFT_OUT]
-    for k, heading in enumerate(table.headings):
-        if k not in left_out:
-            side: Any = "left" if k < table.texts else "right"
-            made.add_column(heading, justify=side, overflow="fold", no_wrap=k >= table.texts)
-    for cells in table.rows:
-        made.add_row(*(cell for k, cell in enumerate(cells) if k not in left_out))
-    return made
