@@ -90,14 +90,13 @@ def _cases() -> Iterator[tuple[Problem, Planner]]:
 
 
 def _in_motion(problem: Problem) -> Problem:
-    """Beside the way a box that tumbles and spheres that drift; the robot may wait for them."""
+    """Beside the way boxes, at rest and tumbling, and drifting spheres; the robot may wait."""
     tumble = Tumble(inertia=(1.0, 2.0, 3.0), rate=(0.01, 0.0, 0.01))
     box = MovingBody([Box((0.1, 0.1, 0.1))], tumble, position=(5.0, 0.0, 2.0))
     cloud = DebrisCloud([[5.0, 0.0, -2.0]] * 2, [0.1] * 2, [[0.01, 0.0, 0.0], [0.0, 0.01, 0.0]])
     lattice = Lattice(10, Axis(half_count=1, spacing=0.5), progress=Progress(steps=5))
-    return replace(
-        problem, scene=Scene(bodies=[box], debris=[cloud]), lattice=lattice, duration=100.0
-    )
+    scene = Scene(shapes=[Box((0.1, 0.1, 0.1), (5.0, 2.0, 0.0))], bodies=[box], debris=[cloud])
+    return replace(problem, scene=scene, lattice=lattice, duration=100.0)
 
 
 def _hurdle(count: int) -> Scene:

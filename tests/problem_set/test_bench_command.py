@@ -13,11 +13,11 @@ import ffsr_plan as fp
 from ffsr_plan.cli import app
 from ffsr_plan.cli.console.report_tables import printed as printed_table
 from ffsr_plan.problem_set.best_plans import BestPlan, BestPlans
+from ffsr_plan.problem_set.judging.judged_folder import judge_folder
 from ffsr_plan.problem_set.judging.result_files import (
     Judged,
     JudgedRow,
     read_judged,
-    read_results,
     write_judged,
 )
 from ffsr_plan.problem_set.report.profiles import (
@@ -146,13 +146,13 @@ def test_results_of_another_planner_are_not_replaced(small_run, tmp_path):
     assert (folder / "results.json").read_bytes() == before  # those of the other problem stay
 
 
-def test_one_task_has_one_result(small_run, tmp_path):
+def test_one_task_has_one_result(small_run, tmp_path, problems):
     folder, _ = small_run
     data = json.loads((folder / "results.json").read_text())
     for rows, message in (([], "at least one"), (data["results"] * 2, "one for each problem")):
         (tmp_path / "results.json").write_text(json.dumps(data | {"results": rows}))
         with pytest.raises(fp.InvalidInput, match=message):
-            read_results(tmp_path)
+            judge_folder(tmp_path, problems)
 
 
 def test_planners_are_known_by_name():

@@ -36,6 +36,8 @@ def judge_folder(
     if results.set_version != problems.version:
         what = f"set_version in '{folder}'"
         raise InvalidInput(what, results.set_version, f"version {problems.version} of the set")
+    if not results.rows:
+        raise InvalidInput(f"results in '{folder}'", [], "at least one")
     rows = []
     for result in results.rows:
         rows.append(row_of(result, problems, _judgement(folder, result, problems)))

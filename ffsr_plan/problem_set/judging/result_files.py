@@ -122,14 +122,12 @@ def read_results(folder: Path) -> Results:
     rows = data["results"]
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise InvalidInput(f"{what}, results", type(rows).__name__, "a list of objects")
-    if not rows:
-        raise InvalidInput(f"{what}, results", rows, "a list of at least one object")
     made = tuple(_result(f"{what}, results.{k}", row) for k, row in enumerate(rows))
     tasks = Counter((row.problem, row.seed) for row in made)
-    (problem, seed), count = tasks.most_common(1)[0]
-    if count > 1:
-        given, allowed = f"{count} for {problem}, seed {seed}", "one for each problem and seed"
-        raise InvalidInput(f"{what}, results", given, allowed)
+    for (problem, seed), count in tasks.items():
+        if count > 1:
+            given, allowed = f"{count} for {problem}, seed {seed}", "one for each problem and seed"
+            raise InvalidInput(f"{what}, results", given, allowed)
     planner = text(f"{what}, planner", data["planner"])
     return Results(planner, text(f"{what}, set_version", data["set_version"]), made)
 
