@@ -1,8 +1,6 @@
 """Sizes of random samples: a part of each by default, all of it where FFSR_PLAN_LONG_TESTS is set.
 
-    FFSR_PLAN_LONG_TESTS=1 pytest -n auto
-
-takes some 50 minutes on two cores.
+FFSR_PLAN_LONG_TESTS=1 pytest -n auto
 """
 
 import os
