@@ -10,7 +10,7 @@ from ffsr_plan.core.text_files import write_text
 from ffsr_plan.problem_set.best_plans import BestPlans
 from ffsr_plan.problem_set.judging.result_files import Judged
 from ffsr_plan.problem_set.report.figures import bench_figures
-from ffsr_plan.problem_set.report.summary import compared, family_table, in_common, reasons
+from ffsr_plan.problem_set.report.summary import by_key, compared, family_table, in_common, reasons
 from ffsr_plan.problem_set.set_index import ProblemSet
 from ffsr_plan.studies.report.page import page
 
@@ -35,6 +35,7 @@ def write_page(path: Path, judged: Sequence[Judged], problems: ProblemSet) -> No
     if any(not row.accepted for each in named for row in each.rows):
         tables.append(reasons(named))
     shared = in_common(named)
+    alike = len({frozenset(by_key(each)) for each in shared}) == 1
     figures = bench_figures(shared, problems.families, best)
     known = sum(row.objective is not None for name in problems.names() if (row := best.get(name)))
     sentences = [
@@ -42,7 +43,7 @@ def write_page(path: Path, judged: Sequence[Judged], problems: ProblemSet) -> No
         f"families, {known} of them with a known plan. Every trajectory is judged by certify.",
         "Success and cost over time: until the first path that is proven free, and F of the best "
         "one by then; tasks without a path count as infinite. Profiles: Dolan and More (2002).",
-        "Pictures are of the tasks that all planners have: "
+        f"Pictures are of the tasks that {'all planners have' if alike else 'each has'}: "
         + ", ".join(f"{len(each.rows)} of {each.planner}" for each in shared)
         + ". A task is a problem with a seed.",
         "F is that of the whole motion at 40 pieces of equal length, the same for every planner.",
