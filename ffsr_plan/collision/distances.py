@@ -259,12 +259,10 @@ class ObstacleQuery:
         if measures.spheres_only:
             radii = tree.spheres[row, 3].tolist()
             return np.array(measures.to_spheres(shape.tolist(), radii, local))
-        found = np.empty(len(shape))
-        for k, (place, shift, i) in enumerate(zip(*where, shape, strict=True)):
-            position = placed.positions[place, i] + shift
-            own = placed.rotations[place, i], position
-            found[k], _ = measures.distance(int(i), int(row[k]), *own)
-        return found
+        places, shifts = where
+        own = placed.rotations[places, shape], placed.positions[places, shape] + shifts
+        pairs = zip(shape.tolist(), row.tolist(), *own, strict=True)
+        return np.array([measures.distance(*pair)[0] for pair in pairs])
 
     def _nearest_hull(
         self,

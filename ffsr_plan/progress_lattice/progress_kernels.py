@@ -1,4 +1,9 @@
-"""Compiled shortest paths and bounds on a lattice with progress."""
+"""Compiled shortest paths and bounds on a lattice with progress.
+
+Between calls of `extend` nodes and edges only become dearer, so that a node is still entered best
+by the same step unless its tail has changed or it is refused. Should a node become cheaper by
+rounding, later layers are searched anew.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +17,18 @@ from ffsr_plan.lattice.edge_states import REFUSED
 @kernel
 def extend(
     first: int,
+    fresh: bool,
+    refused: bool,
     edges: IntArray,
     heads: IntArray,
+    tails: IntArray,
     edge_costs: Array,
     node_costs: Array,
     at_rest: States,
     moving: States,
+    remaining: Array,
+    limit: float,
+    entered: Array,
     costs: Array,
     before: IntArray,
 ) -> None:
@@ -25,65 +36,165 @@ def extend(
 
     Args:
         first: the first layer whose edges are evaluated; `costs` are valid up to it.
-        edges: (A, D) edge of each step from each place; -1 where there is none.
-        heads: (n, W) offset that each step aside from each offset leads to; -1 for none.
+        fresh: whether no node has been entered yet, or none up to this limit.
+        refused: whether edges may have been refused since the last call.
+        edges: (A, D), and the next ones, see `ProgressRoadmap`.
+        heads: (n, W).
+        tails: (n, W, 2) offsets from which a step aside leads to each, and these steps; -1 after.
         edge_costs: (E, W).
-        node_costs: (m + 1, A, n), infinite where a node may not be entered.
-        at_rest: (E, n, W) states of edges as far as obstacles at rest count; refused ones are left
-            out.
-        moving: (m, E, n, W) the same for bodies that move; (0, ...) without any.
+        node_costs: (m + 1, A, n).
+        at_rest: (E, n, W).
+        moving: (m, E, n, W), or (0, ...).
+        remaining: (m + 1, A, n) least cost from each node to the goal, or a lower bound.
+        limit: nodes through which every path costs more are left out.
+        entered: (m + 1, A, n) least cost of reaching each node without its own, updated.
         costs: (m + 1, A, n) least cost of reaching each node, updated.
-        before: (m + 1, A, n) step by which the shortest path comes: place and offset that it comes
-            from, and the step aside, as one number; updated.
+        before: (m + 1, A, n, 3) place and offset from which the shortest path comes, and its step
+            aside; -1 for none; updated.
     """
     layers, count, n = costs.shape
-    reach, aside = edges.shape[1] // 2, heads.shape[1]
+    changed, again = np.zeros((2, count, n), dtype=np.bool_)
     for k in range(first, layers - 1):
-        costs[k + 1] = np.inf
-        for a in range(count):
-            for d in range(edges.shape[1]):
-                e, b = edges[a, d], a + d - reach
-                if e < 0:
-                    continue
-                for j in range(n):
-                    so_far = costs[k, a, j]
-                    if so_far == np.inf:
-                        continue
-                    for w in range(aside):
-                        h = heads[j, w]
-                        if h < 0:
-                            continue
-                        total = so_far + edge_costs[e, w]
-                        if total >= costs[k + 1, b, h] or node_costs[k + 1, b, h] == np.inf:
-                            continue
-                        if at_rest[e, j, w] == REFUSED:
-                            continue
-                        if len(moving) and moving[k, e, j, w] == REFUSED:
-                            continue
-                        costs[k + 1, b, h] = total
-                        before[k + 1, b, h] = (a * n + j) * aside + w
-        for a in range(count):
-            for j in range(n):
-                costs[k + 1, a, j] += node_costs[k + 1, a, j]
+        cheaper, come = False, before[k + 1]
+        again[:] = fresh
+        _mark(changed, edges, heads, come, again)
+        if refused:
+            _mark_refused(k, edges, at_rest, moving, come, again)
+        for b in range(count):
+            for h in range(n):
+                if again[b, h]:
+                    entered[k + 1, b, h] = _enter(
+                        k, b, h, edges, tails, edge_costs, at_rest, moving, costs, come[b, h]
+                    )
+                total = entered[k + 1, b, h] + node_costs[k + 1, b, h]
+                if total + remaining[k + 1, b, h] > limit:
+                    total = np.inf
+                changed[b, h] = total != costs[k + 1, b, h]
+                cheaper = cheaper or total < costs[k + 1, b, h]
+                costs[k + 1, b, h] = total
+        fresh = fresh or cheaper
 
 
 @kernel
-def trace(before: IntArray, aside: int, goal: int, origin: int, path: IntArray) -> None:
+def remain(
+    goal: int,
+    origin: int,
+    edges: IntArray,
+    heads: IntArray,
+    edge_costs: Array,
+    node_costs: Array,
+    remaining: Array,
+) -> None:
+    """Least costs from nodes to the goal, without their own, if all edges are free.
+
+    Args:
+        goal: place of the goal.
+        origin: offset of the goal.
+        edges: (A, D), and the next ones, see `ProgressRoadmap`.
+        heads: (n, W).
+        edge_costs: (E, W).
+        node_costs: (m + 1, A, n).
+        remaining: (m + 1, A, n) filled in; infinite where no path leads to the goal.
+    """
+    layers, count, n = remaining.shape
+    reach = edges.shape[1] // 2
+    remaining[:] = np.inf
+    remaining[layers - 1, goal, origin] = 0.0
+    for k in range(layers - 2, -1, -1):
+        for a in range(count):
+            for b in range(max(a - reach, 0), min(a + reach + 1, count)):
+                e = edges[a, b - a + reach]
+                if e < 0:
+                    continue
+                for j in range(n):
+                    least = remaining[k, a, j]
+                    for w in range(heads.shape[1]):
+                        h = heads[j, w]
+                        if h >= 0:
+                            own = node_costs[k + 1, b, h] + remaining[k + 1, b, h]
+                            least = min(least, edge_costs[e, w] + own)
+                    remaining[k, a, j] = least
+
+
+@kernel
+def _mark(changed: Flags, edges: IntArray, heads: IntArray, come: IntArray, again: Flags) -> None:
+    """Mark in `again` (A, n) the nodes that are entered from `changed` (A, n) ones."""
+    count, n = changed.shape
+    reach = edges.shape[1] // 2
+    for a in range(count):
+        for j in range(n):
+            if not changed[a, j]:
+                continue
+            for b in range(max(a - reach, 0), min(a + reach + 1, count)):
+                for w in range(heads.shape[1]):
+                    h = heads[j, w]
+                    if h >= 0 and come[b, h, 0] == a and come[b, h, 1] == j:
+                        again[b, h] = True
+
+
+@kernel
+def _mark_refused(
+    k: int, edges: IntArray, at_rest: States, moving: States, come: IntArray, again: Flags
+) -> None:
+    """Mark in `again` (A, n) the nodes that are entered from layer `k` by refused edges."""
+    count, n = again.shape
+    for b in range(count):
+        for h in range(n):
+            a, j, w = come[b, h, 0], come[b, h, 1], come[b, h, 2]
+            if a >= 0:
+                e = edges[a, b - a + edges.shape[1] // 2]
+                barred = len(moving) > 0 and moving[k, e, j, w] == REFUSED
+                again[b, h] = again[b, h] or barred or at_rest[e, j, w] == REFUSED
+
+
+@kernel
+def _enter(
+    k: int,
+    b: int,
+    h: int,
+    edges: IntArray,
+    tails: IntArray,
+    edge_costs: Array,
+    at_rest: States,
+    moving: States,
+    costs: Array,
+    step: IntArray,
+) -> float:
+    """The least cost of entering place `b` and offset `h` from layer `k`, and the `step` for it."""
+    least, reach = np.inf, edges.shape[1] // 2
+    step[0] = -1
+    for a in range(max(b - reach, 0), min(b + reach + 1, len(edges))):
+        e = edges[a, b - a + reach]
+        if e < 0:
+            continue
+        for i in range(tails.shape[1]):
+            j, w = tails[h, i, 0], tails[h, i, 1]
+            if j < 0:
+                break
+            total = costs[k, a, j] + edge_costs[e, w]
+            if total >= least or at_rest[e, j, w] == REFUSED:
+                continue
+            if len(moving) and moving[k, e, j, w] == REFUSED:
+                continue
+            least = total
+            step[0], step[1], step[2] = a, j, w
+    return least
+
+
+@kernel
+def trace(before: IntArray, goal: int, origin: int, path: IntArray) -> None:
     """The shortest path to the goal.
 
     Args:
-        before: (m + 1, A, n), see `extend`.
-        aside: W, number of steps aside.
+        before: (m + 1, A, n, 3), see `extend`.
         goal: place of the goal.
         origin: offset of the goal.
         path: (m + 1, 3) place, offset, and step aside towards the next layer; filled in.
     """
-    n, last = before.shape[2], len(path) - 1
+    last = len(path) - 1
     path[last, 0], path[last, 1], path[last, 2] = goal, origin, -1
     for k in range(last, 0, -1):
-        code = before[k, path[k, 0], path[k, 1]]
-        node = code // aside
-        path[k - 1, 0], path[k - 1, 1], path[k - 1, 2] = node // n, node % n, code % aside
+        path[k - 1] = before[k, path[k, 0], path[k, 1]]
 
 
 @kernel
