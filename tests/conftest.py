@@ -19,6 +19,15 @@ settings.register_profile(  # of tools/run_mutations.py: a failing example need 
 settings.load_profile("ffsr")
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Tests of one file run on one worker: it compiles their kernels and makes their fixtures."""
+    from xdist.scheduler import LoadFileScheduling
+
+    config.option.loadscopereorder = False  # the last files are short
+    return LoadFileScheduling(config, log)
+
+
 @pytest.fixture(scope="session")
 def robot():
     return fp.load_robot("planar_dual_arm")
