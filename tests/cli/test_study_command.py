@@ -41,6 +41,15 @@ def test_a_second_run_finds_everything_done(folder):
     assert {row["key"]: row["finished"] for row in fp.StudyResult(folder).rows()} == before
 
 
+def test_rows_of_points_that_the_file_does_not_have_are_told(folder, tmp_path):
+    (tmp_path / "fewer.toml").write_text(STUDY.replace("count = 5", "count = 2"))
+    command = ["study", str(tmp_path / "fewer.toml"), "--out", str(folder)]
+    result = CliRunner().invoke(app, command)
+    assert "24 of the rows are of points that the study file does not have." in result.stdout
+    data = json.loads(CliRunner().invoke(app, [*command, "--json"]).stdout)["study"]
+    assert (data["rows"], data["rows_of_other_points"]) == (40, 24)
+
+
 def test_the_report_has_tables_pictures_and_every_row(folder, tmp_path):
     pytest.importorskip("pyarrow")
     from pyarrow import parquet
@@ -51,6 +60,7 @@ def test_the_report_has_tables_pictures_and_every_row(folder, tmp_path):
     assert result.exit_code == 0, result.output
     page = (tmp_path / "out" / "report.html").read_text()
     assert page.count("<svg") == 3
+    assert len(re.findall(r"</svg>\s*<figcaption>[A-Z][^<]{40,}</figcaption>", page)) == 3
     assert not re.search(r"""<(script|link|img)|(src|href)=["'](?!#)""", page)  # no network
     rows = fp.StudyResult(folder).rows()
     read = list(csv.DictReader(table.open()))

@@ -14,7 +14,7 @@ from ffsr_plan.cli.console.result_files import RESULTS, write_results
 from tests.cli.test_commands import QUICK
 from tests.helpers.sample_sizes import sample
 
-MOMENTS = sample(8, 20)
+MOMENTS = sample(4, 20)
 ENDLESS = '[planner]\nname = "ant-system"\nants = 3000\ncycles = 100000\nrho = 0.999999\n'
 OPTIONS = ("--out", "results", "--force", "--time-limit", "30")
 COMMAND = (

@@ -23,7 +23,7 @@ if __name__ == "__main__":
     robot = fp.load_robot("point")  # alone in space: few kernels
     goal = robot.configuration((4.0, 0.0, 0.0))
     lattice = fp.Lattice(8, fp.Axis(3, 0.2))
-    problem = fp.Problem(robot, fp.Scene(), robot.neutral(), goal, lattice=lattice)
+    problem = fp.Problem(robot, fp.Scene(), robot.neutral(), goal, "attitude-held", lattice=lattice)
     for _ in range(2):
         watch, begin = Stopwatch(), time.perf_counter()
         plan = fp.plan(problem, fp.AntSystem(cycles=2), refine=False, colonies=2, workers=2)

@@ -56,11 +56,17 @@ def problem_in(mode):
     return scattered(robot, 11)
 
 
-@pytest.mark.parametrize("mode", LIMITS)
-def test_mujoco_flies_smooth_flights(mode):
+@lru_cache
+def flown_in(mode):
+    """A plan and its flight."""
     problem = problem_in(mode)
     plan = fp.plan(problem, seed=0, **({} if problem.lattice is not None else {"until": "first"}))
-    flight = plan.timed(**LIMITS[mode])
+    return plan, plan.timed(**LIMITS[mode])
+
+
+@pytest.mark.parametrize("mode", LIMITS)
+def test_mujoco_flies_smooth_flights(mode):
+    plan, flight = flown_in(mode)
     step, course = STEPS[mode], course_of(flight)
     every = round(RECORDED / step)
     flown = engine.fly(plan.problem.robot, mode, course, flight.duration, step, every)
@@ -80,9 +86,7 @@ def test_mujoco_flies_smooth_flights(mode):
 
 @pytest.mark.parametrize("mode", LIMITS)
 def test_the_engine_needs_the_forces_that_a_smooth_flight_states(mode):
-    problem = problem_in(mode)
-    plan = fp.plan(problem, seed=0, **({} if problem.lattice is not None else {"until": "first"}))
-    flight = plan.timed(**LIMITS[mode])
+    plan, flight = flown_in(mode)
     ends = flight.switch_times
     states = flight.at(0.5 * (ends[1:] + ends[:-1])[::3])
     force, moment, torques = inverse_dynamics(plan.problem.robot, states)

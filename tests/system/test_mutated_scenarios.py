@@ -11,7 +11,7 @@ import pytest
 from tests.helpers.mutated_scenario_runs import MOST_SECONDS
 from tests.helpers.sample_sizes import sample
 
-SEED, COUNT = 12, sample(160, 380)
+SEED, COUNT = 12, sample(80, 380)
 ENOUGH = COUNT // 6  # plans, and refusals; else the mutations are too coarse or too fine
 
 

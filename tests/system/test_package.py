@@ -58,7 +58,7 @@ def test_the_built_wheel_plans_in_a_new_environment(tmp_path):
     run(sys.executable, "-m", "build", "--wheel", "--outdir", tmp_path, ROOT)
     (wheel,) = tmp_path.glob("*.whl")
     run(sys.executable, "-m", "venv", tmp_path / "venv")
-    run(tmp_path / "venv/bin/pip", "install", "--quiet", wheel)
+    run(tmp_path / "venv/bin/pip", "install", "--quiet", "--no-compile", wheel)
     run(tmp_path / "venv/bin/python", "-c", OUTSIDE)
     run(tmp_path / "venv/bin/ffsr-plan", "plan", "fig2b", "--out", "results")
     assert (tmp_path / "results" / "path.png").stat().st_size > 1000

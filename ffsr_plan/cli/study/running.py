@@ -67,7 +67,7 @@ def run_and_report(
         again = f"the same command goes on: {shlex.join(command)}"
         err_console.print(f"ffsr-plan: interrupted; {done}; {again}", style="red", soft_wrap=True)
         raise typer.Exit(INTERRUPTED) from None
-    _show(result, [], output)
+    _show(result, [], output, len(result) - len(study))
     return result.faults > 0
 
 
@@ -95,7 +95,9 @@ def report_study(
     _show(result, files, output)
 
 
-def _show(result: StudyResult, files: Sequence[Path], output: Output) -> None:
+def _show(
+    result: StudyResult, files: Sequence[Path], output: Output, others: int | None = None
+) -> None:
     from ffsr_plan.studies.report.report_files import sentences
     from ffsr_plan.studies.report.tables import study_tables
 
@@ -105,6 +107,8 @@ def _show(result: StudyResult, files: Sequence[Path], output: Output) -> None:
     def readable() -> Iterator[RenderableType]:
         yield from (printed(table, _LEFT_OUT) for table in tables)
         yield from sentences(rows)
+        if others:
+            yield f"{others} of the rows are of points that the study file does not have."
         if files:
             yield f"Written: {', '.join(map(str, files))}"
         else:
@@ -116,6 +120,7 @@ def _show(result: StudyResult, files: Sequence[Path], output: Output) -> None:
             "study": {
                 "directory": str(result.directory),
                 "rows": len(rows),
+                **({} if others is None else {"rows_of_other_points": others}),
                 "plans": result.plans,
                 "faults": result.faults,
                 "digest": result.digest(),

@@ -18,7 +18,7 @@ from ffsr_plan.problem_set.report.profiles import (
     times_and_costs,
 )
 from ffsr_plan.problem_set.report.summary import families_of, ratios
-from ffsr_plan.studies.report.figures import draw_boxes
+from ffsr_plan.studies.report.figures import BOXES, draw_boxes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,12 +29,22 @@ _COLUMNS = 4  # of panels by family
 _BOX = 0.7  # share of the room between two families that boxes take
 _GREY = "#9aa0a8"
 _STYLES = ("-", "--", "-.", ":")
+_CAPTIONS = {
+    "success": "Share of tasks with a path after some time. Tasks without a path count too.",
+    "success_by_family": "The same in each family of problems.",
+    "cost": "Median of F of the best path by then over the best F known; bands go from quartile to "
+    "quartile. A task without a path counts as infinite.",
+    "profiles": "Share of tasks on which time and F of a planner are within a factor of the best "
+    "planner's.",
+    "gap": f"F of the paths above the best F known, by family. {BOXES}",
+    "clearance": f"Least clearance of the paths, by family. {BOXES}",
+}
 
 
 def bench_figures(
     judged: Sequence[Judged], titles: dict[str, str], best: BestPlans
 ) -> dict[str, Figure]:
-    """The pictures, by name.
+    """The pictures, by name; the label of each is its caption.
 
     Args:
         judged: rows of planners, at least one of which has a row.
@@ -53,6 +63,8 @@ def bench_figures(
     found["clearance"] = _boxes_by_family(
         judged, families, _clearances, "least clearance [m]", from_zero=True
     )
+    for name, figure in found.items():
+        figure.set_label(_CAPTIONS[name])
     return found
 
 

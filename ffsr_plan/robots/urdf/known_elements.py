@@ -7,6 +7,7 @@ a shape. So in the elements that are used every attribute has to be known. Eleme
 
 from __future__ import annotations
 
+from collections import Counter
 from difflib import get_close_matches
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -93,14 +94,14 @@ def check_element(element: ElementTree.Element, where: str) -> None:
     known = ELEMENTS[element.tag]
     if known.attributes is not None:
         _check_attributes(element, where, ("name", *known.attributes))
-    tags = [part.tag for part in element if isinstance(part.tag, str)]
+    counts = Counter(part.tag for part in element if isinstance(part.tag, str))
     for part in element:
         if not isinstance(part.tag, str):
             continue
         tag, local = part.tag, part.tag.rpartition(":")[2]
         if tag in known.parts:
-            if tags.count(tag) > known.parts[tag]:
-                value = f"{tags.count(tag)} of them"
+            if counts[tag] > known.parts[tag]:
+                value = f"{counts[tag]} of them"
                 raise refused(part, f"{where}, <{tag}>", value, "one of them")
         elif local in ELEMENTS:
             allowed = f"<{local}> without a prefix" if ":" in tag else "no such element there"

@@ -28,10 +28,14 @@ _WIDTH, _HEIGHT = 7.2, 3.6  # [in]
 _BOX = 0.7  # share of the room between two values that boxes take
 _GREY = "#9aa0a8"
 _SAME_COST = 1.0005
+BOXES = "Boxes go from quartile to quartile, with the median; whiskers from 5 to 95 %."
+"""What boxes of a picture are."""
 
 
 def study_figures(rows: Sequence[Row], axes: Sequence[str]) -> dict[str, Figure]:
     """The pictures of a study, by name; those for which there are no numbers are left out.
+
+    The label of each picture is its caption.
 
     Args:
         rows: of the study.
@@ -70,6 +74,10 @@ def _success(rows: Sequence[Row], planners: Sequence[str]) -> Figure:
     ax.set_xscale("log")
     ax.set_xlim(0.7 * first, 1.4 * latest)
     ax.set_ylim(0.0, 102.0)
+    figure.set_label(
+        "Share of the tasks of a planner that had a plan after some computing time. Tasks without "
+        "a plan count too."
+    )
     ax.set_xlabel("computing time of one plan [s]")
     ax.set_ylabel("tasks with a plan [%]")
     _legend(ax)
@@ -94,6 +102,10 @@ def _costs(rows: Sequence[Row], planners: Sequence[str]) -> Figure:
         ax.step([0.0, *inside, 1e6], [*shares, shares[-1]], where="post", **_line(k), label=name)
     ax.set_xlim(0.0, 100.0 * (most - 1.0))
     ax.set_ylim(0.0, 102.0)
+    figure.set_label(
+        "Share of the tasks of a planner whose F is at most so much above the best of all planners "
+        "and seeds, on problems that any of them solves."
+    )
     ax.set_xlabel("F above the best of all planners and seeds on the same problem [%]")
     ax.set_ylabel("tasks [%], of solved problems")
     _legend(ax)
@@ -129,6 +141,7 @@ def _by_axis(rows: Sequence[Row], planners: Sequence[str], axis: str) -> Figure:
         ax.set_xlim(-0.6, len(values) - 0.4)
         ax.set_xlabel(axis)
     right.set_ylim(bottom=0.0)
+    figure.set_label(f"Success, F and proven clearance of plans by {axis}. {BOXES}")
     handles, labels = left.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper left", ncols=4, frameon=False, fontsize=8)
     return figure

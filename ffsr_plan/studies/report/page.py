@@ -20,7 +20,8 @@ h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin-top: 2rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: 13px; }
 th, td { padding: .3rem .7rem; border-bottom: 1px solid #d8dee6; text-align: right; }
 th { background: #eef3f8; font-weight: 600; } .text { text-align: left; }
-svg { max-width: 100%; height: auto; } p.note { color: #52657a; }
+svg { max-width: 100%; height: auto; } p.note, figcaption { color: #52657a; }
+figure { margin: 1.5rem 0; } figcaption { font-size: 13px; max-width: 46rem; }
 """
 
 
@@ -33,7 +34,7 @@ def page(
         title: of the study.
         sentences: below the title.
         tables: of the study.
-        figures: pictures by name, in their order.
+        figures: pictures by name, in their order; their labels are captions.
     """
     parts = [
         "<!doctype html>",
@@ -43,7 +44,7 @@ def page(
         f"<h1>{escape(title)}</h1>",
         *(f'<p class="note">{escape(sentence)}</p>' for sentence in sentences),
         *(_table(table) for table in tables[:1]),
-        *(f"<p>{svg(figure)}</p>" for figure in figures.values()),
+        *(_captioned(figure) for figure in figures.values()),
         *(_table(table) for table in tables[1:]),
         "</body></html>\n",
     ]
@@ -61,6 +62,11 @@ def _table(table: Table) -> str:
     rows = "\n".join(row("td", cells) for cells in table.rows)
     head = row("th", table.headings)
     return f'<h2>{escape(table.title)}</h2><div class="table"><table>{head}{rows}</table></div>'
+
+
+def _captioned(figure: Figure) -> str:
+    caption = escape(str(figure.get_label() or ""))
+    return f"<figure>{svg(figure)}<figcaption>{caption}</figcaption></figure>"
 
 
 def svg(figure: Figure) -> str:
