@@ -196,4 +196,15 @@ CLAIMS = [
         "none does, and the largest error is {share} % of its bound",
         {"share": Cell("reaction_error", None, "largest share", take=max, factor=100.0)},
     ),
+    Claim(
+        "docs/proof.md",
+        "of {free} proven free {touching} touches, and of {refused} refused {clear} is clear by "
+        "more than 1 mm",
+        {
+            "free": Cell("shape_soundness", None, "proven free"),
+            "touching": Cell("shape_soundness", None, "of these, touching"),
+            "refused": Cell("shape_soundness", None, "refused"),
+            "clear": Cell("shape_soundness", None, "of these, clear by more than 1 mm"),
+        },
+    ),
 ]
