@@ -36,7 +36,8 @@ def flight_times(problem: Problem, shortest: float, given: float | None) -> Iter
     known = problem.scene.known_until
     if (wanted := given or shortest) > known:
         allowed = f"at most {known:.6g} s, up to which the motions of all bodies are known"
-        raise InvalidInput("duration of the flight", wanted, allowed)
+        larger = "" if given else "; larger limits make the flight shorter"
+        raise InvalidInput("duration of the flight", wanted, allowed + larger)
     own = problem.duration or shortest
     latest = min(max(own, _LATEST * shortest), known)
     ends = [given] if given is not None else np.geomspace(shortest, latest, _ENDS).tolist()

@@ -175,3 +175,12 @@ def test_a_duration_that_cannot_be_is_refused(behind, duration):
     for plan in (behind, behind.smooth()):
         with pytest.raises(fp.InvalidInput, match="duration: got"):
             plan.timed(**LIMITS, duration=duration)
+
+
+def test_a_flight_that_outlasts_what_is_known_says_what_helps():
+    plan = fp.plan(problem_past(body_of("track"), ramp=0.2), fp.LatticeOptimum())
+    slow = {"joint_acceleration": 0.5, "thruster_acceleration": 1e-4}
+    with pytest.raises(fp.InvalidInput, match=r"known; larger limits make the flight shorter$"):
+        plan.timed(**slow)
+    with pytest.raises(fp.InvalidInput, match=r"at most \S+ s, up to which .* known$"):
+        plan.timed(**LIMITS, duration=1000.0)
