@@ -1,11 +1,11 @@
 """Bounds on the travel of bodies that move against sampled travel.
 
-    python -m benchmarks.studies.moving.body_travel --bodies 1000 --edges 4500
+    python -m benchmarks.studies.moving.body_travel --bodies 5000 --edges 4500
 
 compares `MovingBody.travel` with the sampled paths of points of random bodies, `BodyEdge.travel`
 with changes of clearance on random edges at an even pace and with a ramp, and the largest rate of
 tumbles with the first maximum that an integration meets, and writes docs/benchmarks/body_travel.md.
-It takes hours.
+It takes about an hour of a core.
 """
 
 import argparse
@@ -284,7 +284,7 @@ def report(of_bodies, of_edges, of_rates, options):
 def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--bodies", type=int, default=1000, help="of each motion")
+    parser.add_argument("--bodies", type=int, default=5000, help="of each motion")
     parser.add_argument("--edges", type=int, default=4500, help="of each motion and pace")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--tumbles", type=int, default=1000, help="whose rate is followed")

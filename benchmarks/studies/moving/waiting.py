@@ -2,15 +2,16 @@
 
     python -m benchmarks.studies.moving.waiting
 
-plans 100 random scenes in the plane and 10 in space, looks at every flight found at every
+plans 100 random scenes in the plane and 66 in space, looks at every flight found at every
 millisecond by code that shares none with the package (`flight_check.py`), has OMPL plan those that
 no fixed pace solves (needs `pip install ompl==2.0.1`; `--ompl 0` leaves it out), and writes
-docs/benchmarks/waiting.md. It takes about half an hour.
+docs/benchmarks/waiting.md. It takes about a quarter of an hour on two cores.
 """
 
 import argparse
 import os
 import time
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -121,16 +122,16 @@ def runs(draws, count, steady=True, step=MILLISECOND):
         yield Run(family, seed, found, float(np.median(seconds)), os.getloadavg()[0])
 
 
-def in_plane(count):
-    """`count` scenes of each family."""
-    for family, name in enumerate(FAMILIES):
-        yield from runs(((name, k, drawn(k, family)) for k in range(10 * count)), count)
+def in_plane(family, count):
+    """`count` scenes of a family."""
+    draws = ((FAMILIES[family], k, drawn(k, family)) for k in range(10 * count))
+    return list(runs(draws, count))
 
 
 def in_space(count):
     """`count` scenes in space."""
     draws = (("space", k, drawn_in_space(k)) for k in range(10 * count))
-    yield from runs(draws, count, steady=False)
+    return list(runs(draws, count, steady=False))
 
 
 def _solved(scenes):
@@ -278,15 +279,19 @@ def main() -> None:
     """Measure and write the report."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--scenes", type=int, default=25, help="of each family")
-    parser.add_argument("--in-space", type=int, default=10, help="scenes in space")
+    parser.add_argument("--in-space", type=int, default=66, help="scenes in space")
     parser.add_argument("--ompl", type=int, default=20, help="scenes for OMPL")
+    parser.add_argument("--workers", type=int, default=2, help="processes")
     parser.add_argument("--out", type=Path, default=RESULTS / "waiting.md")
     args = parser.parse_args()
-    plane, space, sampled = [], [], []
-    for found, source in ((plane, in_plane(args.scenes)), (space, in_space(args.in_space))):
-        for run in source:
-            found.append(run)
-            print(run, flush=True)
+    sampled = []
+    with ProcessPoolExecutor(args.workers) as pool:
+        of_space = pool.submit(in_space, args.in_space)
+        of_families = [pool.submit(in_plane, k, args.scenes) for k in range(len(FAMILIES))]
+        plane = [run for found in of_families for run in found.result()]
+        space = of_space.result()
+    for run in (*plane, *space):
+        print(run, flush=True)
     if args.ompl:
         from benchmarks.studies.moving.ompl_in_time import sampled_runs
 
